@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file background.h
-/// Work that goes on beside its caller.
+/// Work in the background of its caller.
 
 #include <functional>
 #include <future>
@@ -12,13 +12,13 @@
 namespace tribound::app
 {
 
-/// One job at a time, in a thread of its own where OpenMP offers more than one, else in place: start() then
-/// returns when the job is done. What a job throws is thrown on, once. The end of this object waits for the
-/// job and drops what it throws.
+/// Runs one job at a time, in a thread of its own where OpenMP offers more than one, else in place: start()
+/// then returns when the job is done. An exception of a job is rethrown once. The destructor waits for the
+/// job and drops its exception.
 class Background
 {
  public:
-  /// Waits for the job before; throws what that has thrown, and does not start this one then.
+  /// Waits for the previous job; if that has thrown, rethrows and does not start this one.
   void start(std::function<void()> job)
   {
     wait();
@@ -27,7 +27,7 @@ class Background
     else
       job();
   }
-  /// Waits for the job, if there is one, and throws what it has thrown.
+  /// Waits for the job, if there is one, and rethrows its exception.
   void wait()
   {
     if (job_.valid()) job_.get();

@@ -1,5 +1,5 @@
 /// @file main.cpp
-/// The program: parse the command line, carry out the command, translate errors to exit codes.
+/// The program: parses the command line, executes the command, translates errors to exit codes.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -31,7 +31,7 @@ struct Arguments : SweepRequest
   bool json = false;            ///< of check
   std::string start = "block";  ///< of init: the case to start from
   std::string directory;        ///< of init
-  std::string restart;          ///< of run: the results of another one, or a checkpoint there
+  std::string restart;          ///< of run: an output directory, or a checkpoint there
 };
 
 void add_set_option(CLI::App& command, Arguments& arguments)
@@ -90,7 +90,7 @@ void describe_sweep(CLI::App& sweep, Arguments& arguments)
   add_set_option(sweep, arguments);
 }
 
-/// Commands and options as they stand in --help.
+/// Commands and options as shown by --help.
 void describe_command_line(CLI::App& app, Arguments& arguments)
 {
   app.set_version_flag("--version", std::string("tribound ") + version());
@@ -131,7 +131,7 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
       ->capture_default_str();
 }
 
-/// With less address space OpenBLAS asks for its memory for ever.
+/// With less address space, OpenBLAS requests its memory forever.
 void require_address_space()
 {
   constexpr double least = 1e9;
@@ -141,7 +141,7 @@ void require_address_space()
                    "the libraries alone need 1 GB: ulimit -v unlimited, or more memory for the job");
 }
 
-/// Does what the command line asks for.
+/// Executes the command line.
 ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
 {
   require_address_space();
@@ -167,7 +167,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   return ExitCode::success;
 }
 
-/// What is wrong with the command line. CLI11 says that a command is missing even where one is misspelt.
+/// The error in the command line. CLI11 reports a missing command even where one is misspelt.
 InputError usage_error(const CLI::App& app, const CLI::ParseError& error, std::span<char*> words)
 {
   std::vector<std::string> commands;

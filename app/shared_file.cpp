@@ -8,7 +8,7 @@ namespace tribound::app
 namespace
 {
 
-/// `name` in a folder given relative to the one above that of this program, or else in one of the prefix.
+/// `name` in a folder relative to the one above that of this program, or else below the prefix.
 std::filesystem::path find_installed(const char* relative, const char* absolute, const std::string& name)
 {
   std::error_code error;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file shared_file.h
-/// Files that the program needs beside itself: scripts that it runs, the template of the report page; and
-/// those that are a part of it.
+/// Files that the program needs besides itself: scripts that it runs, the template of the report page; and
+/// those embedded in it.
 
 #include <filesystem>
 #include <span>
@@ -12,12 +12,12 @@
 namespace tribound::app
 {
 
-/// The file of this name, without symbolic links: in share/tribound of the installation or build tree that
-/// the program belongs to, which may have been moved; else under the prefix of the installation. Empty where
-/// it is in neither.
+/// The file of this name, with symbolic links resolved: in share/tribound of the installation or build tree
+/// of the program, which may have been moved; else under the prefix of the installation. Empty if it is in
+/// neither.
 [[nodiscard]] std::filesystem::path find_shared_file(const std::string& name);
 
-/// The folder of the guide, found in the same way; where the prefix has it if it is in neither.
+/// The folder of the guide, found in the same way; if it is in neither, its place under the prefix.
 [[nodiscard]] std::filesystem::path guide_directory();
 
 struct EmbeddedFile

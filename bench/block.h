@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file block.h
-/// What benchmarks of the certificate work on: a block on an obstacle, or two of which one lies on the other.
+/// The problem of benchmarks of the certificate: a block on an obstacle, or two blocks on each other.
 
 #include <algorithm>
 #include <array>
@@ -28,11 +28,11 @@ int cells_across(int degree)
   return tetrahedra[degree - 1];
 }
 
-/// How far two bodies are apart, so that a point tells on which of them it is; the gap is given as 0.
+/// The distance between two bodies, so that a point determines its body; the gap is given as 0.
 inline constexpr double apart = 0.01;
 
-/// The block (0, 2) x (0, 1) [x (0, 1)] with n squares or cubes across; or with about as many cells in all
-/// two of its size, one below the other, the lower one with a square or cube less across.
+/// The block (0, 2) x (0, 1) [x (0, 1)] with n squares or cubes across. Or, with about as many cells in
+/// total, two blocks of its size, one below the other, the lower one with one square or cube fewer across.
 template <int dim>
 mesh::Boxes blocks(int n, int bodies)
 {
@@ -102,9 +102,9 @@ problem::Problem<dim> block_problem(const mesh::Mesh<dim>& mesh, int bodies)
                                std::move(pairs));
 }
 
-/// A smooth displacement of the upper block and a traction that is not its own: what equilibrate() costs does
-/// not depend on them, and the patch problems are solvable for any. The lower block stays where it is, so
-/// that contact is that with the floor.
+/// A smooth displacement of the upper block and an unrelated traction: the cost of equilibrate() does not
+/// depend on them, and the patch problems are solvable for any. The lower block does not move, so that
+/// contact is like that with the floor.
 template <int dim>
 struct Block
 {

@@ -1,6 +1,6 @@
 /// @file certify_bench.cpp
-/// CPU time per cell and working memory of equilibration and estimation, per segment of what contact adds to
-/// them, of one body on an obstacle and of two whose meshes do not match. See bench/README.md.
+/// CPU time per cell and working memory of equilibration and estimation, and per segment of the additional
+/// work for contact, for one body on an obstacle and for two with non-matching meshes. See bench/README.md.
 
 #include <benchmark/benchmark.h>
 #include <malloc.h>
@@ -27,7 +27,7 @@ namespace
 using namespace tribound;
 using bench::Block;
 
-/// The block of these arguments, kept until another one is asked for.
+/// The block of these arguments, kept until another one is requested.
 template <int dim>
 const Block<dim>& block(const benchmark::State& state)
 {
@@ -58,7 +58,7 @@ double status_bytes(const std::string& field)
   return 0;
 }
 
-/// Bytes by which `work` makes the resident memory grow at its largest.
+/// Maximal growth of the resident memory during `work`, in bytes.
 template <class Work>
 double peak_growth(Work work)
 {
@@ -69,7 +69,7 @@ double peak_growth(Work work)
   return status_bytes("VmHWM") - before;
 }
 
-/// Seconds are those of all threads together, so that they are per cell what they would be on one core.
+/// Seconds are summed over all threads, so that values per cell are those of one core.
 void count_per_cell(benchmark::State& state, double n_cells)
 {
   using benchmark::Counter;
@@ -113,7 +113,8 @@ void both(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
-/// The nearest admissible stress of every cell, given sigma_h; sigma(v) is 0, which costs as much as any.
+/// The nearest admissible stress of every cell, given sigma_h; sigma(v) is 0, which costs as much as any
+/// other.
 template <int dim>
 void admissible_stress(benchmark::State& state)
 {
@@ -134,7 +135,7 @@ void admissible_stress(benchmark::State& state)
   count_per_cell(state, b.mesh.n_cells());
 }
 
-/// Of the segments of Gamma_C.
+/// Per segment of Gamma_C.
 template <int dim>
 void count_per_segment(benchmark::State& state, const Block<dim>& b)
 {
@@ -158,7 +159,7 @@ void contact_terms(benchmark::State& state)
   count_per_segment(state, b);
 }
 
-/// mor, and str_mor but for the values of sigma_dis - sigma(u).
+/// mor, and str_mor except for the values of sigma_dis - sigma(u).
 template <int dim>
 void transfer(benchmark::State& state)
 {
@@ -180,7 +181,7 @@ void transfer(benchmark::State& state)
 
 }  // namespace
 
-// Counters are per CPU second of one thread, or per second on the wall where threads are compared.
+// Counters are per CPU second of one thread, or per second of wall time where threads are compared.
 BENCHMARK(equilibration<2>)
     ->ArgNames({"p", "distorted", "bodies", "threads"})
     ->ArgsProduct({{1, 2, 3, 4}, {0, 1}, {1, 2}, {1}})

@@ -1,6 +1,6 @@
 /// @file energy_bench.cpp
-/// CPU time per cell of the bound of the error in the energy norm, beside that of the equilibration and of
-/// the bound of the residual. See bench/README.md.
+/// CPU time per cell of the bound of the error in the energy norm, compared with the equilibration and the
+/// bound of the residual. See bench/README.md.
 
 #include <benchmark/benchmark.h>
 
@@ -31,8 +31,7 @@ double cpu_seconds_of(const Work& work)
   return cpu_seconds() - before;
 }
 
-/// u~ of the block, as the bound of the error in the energy norm needs it. For p = 1 the loads are those of
-/// degree 2.
+/// u~ of the block for the bound of the error in the energy norm. For p = 1 the loads are those of degree 2.
 template <int dim>
 class BalancedBlock
 {
@@ -61,9 +60,9 @@ class BalancedBlock
   certify::FreeMotions<dim> motions_;
 };
 
-/// The bound of the error in the energy norm with all that is made once for a mesh, without quantities;
-/// beside it, in turn, its linear system alone, the equilibration of the same form, and the bound of the
-/// residual. On a small block, where the system does not hide the rest.
+/// The bound of the error in the energy norm with everything that is made once per mesh, without quantities.
+/// For comparison, in turn: its linear system alone, the equilibration of the same form, and the bound of the
+/// residual. The block is small, so that the system does not hide the rest.
 template <int dim>
 void energy_bound(benchmark::State& state)
 {

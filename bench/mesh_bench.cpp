@@ -54,8 +54,8 @@ void verified_mesh(benchmark::State& state)
   state.counters["cells"] = static_cast<double>(data.cells.size());
 }
 
-/// Three tenths of the cells, marked at random: the worst for the closure. Arguments: `times`, and whether
-/// the mesh comes from bisection (with one cell marked) or its longest edges are looked for.
+/// Three tenths of the cells, marked at random: the worst case for the closure. Arguments: `times`, and
+/// whether the mesh comes from bisection (with one cell marked) or its longest edges are determined.
 template <int dim>
 void bisection(benchmark::State& state)
 {

@@ -1,6 +1,6 @@
 /// @file solve_bench.cpp
-/// Where the time of a contact solution goes: CPU seconds of every stage on one core, beside MUMPS alone on
-/// the same matrix. See bench/README.md.
+/// The time of the stages of a contact solution: CPU seconds on one core, compared with MUMPS alone on the
+/// same matrix. See bench/README.md.
 
 #include <fmt/format.h>
 #include <petscksp.h>
@@ -44,7 +44,7 @@ void print(const std::string& stage, double seconds, const std::string& remark =
   fmt::print("{:<34}{:9.3f}  {}\n", stage, seconds, remark);
 }
 
-/// Runs `work` and prints what it took; returns its result.
+/// Runs `work` and prints its cost; returns its result.
 template <class Work>
 auto timed(const std::string& stage, Work work)
 {
@@ -54,7 +54,7 @@ auto timed(const std::string& stage, Work work)
   return result;
 }
 
-/// The smallest n such that the box of 2n x n (x n) squares or cubes has the wanted number of dofs.
+/// The smallest n such that the box of 2n x n (x n) squares or cubes has the required number of dofs.
 int cells_across(int dim, int degree, double n_dofs)
 {
   const auto dofs = [&](int n)
@@ -64,8 +64,8 @@ int cells_across(int dim, int degree, double n_dofs)
   return n;
 }
 
-/// A block on a rigid floor, held on the left, pressed down and pulled to the right: T2D and its 3D sibling,
-/// pulled obliquely.
+/// A block on a rigid floor, fixed on the left, pressed down and pulled to the right: T2D and its 3D
+/// analogue, pulled obliquely.
 case_file::Config block(const Arguments& a)
 {
   const int n = cells_across(a.dim, a.degree, 1e3 * a.thousand_dofs);
@@ -95,7 +95,7 @@ boundary.right.traction = [0.04, 0.06, 0.02]
                                  friction);
 }
 
-/// MUMPS through PETSc and nothing else: what one system costs at least.
+/// MUMPS through PETSc and nothing else: the minimal cost of one system.
 void bare_mumps(const algebra::SparseMatrix& matrix, std::span<const double> rhs)
 {
   const Mat a = matrix.handle();

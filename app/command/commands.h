@@ -22,26 +22,26 @@ enum class ExitCode
   budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
 };
 
-/// The exit code of a failure, and what to tell of it.
+/// The exit code of a failure, and its message.
 [[nodiscard]] std::pair<ExitCode, std::string> describe(const std::exception_ptr& failure);
-/// Tells it on stderr.
+/// Prints the message to stderr.
 int report(ExitCode code, const std::string& message);
 
-/// What the environment says of the processes that mpirun or a batch system has started together: how many, 1
-/// where it says nothing, and whether this is the first of them.
+/// The number of processes started together by mpirun or a batch system, as given by the environment, by
+/// default 1, and whether this is the first of them.
 [[nodiscard]] int n_processes();
 [[nodiscard]] bool is_first_process();
 
-/// To be called first of all: writing to a pipe that nobody reads is no reason to end, children can be waited
-/// for whatever the parent ignores, and a crash, be it of a library, ends the program with a message and exit
-/// code 2.
+/// To be called before anything else. Writing to a closed pipe does not end the program, children can be
+/// waited for whatever the parent ignores, and a crash, even in a library, ends the program with a message
+/// and exit code 2.
 void prepare_signals();
 
-/// From now on SIGINT and SIGTERM set the flag that is returned: the run then ends with the certificate of
-/// its last complete level. A second signal ends the program at once.
+/// From now on SIGINT and SIGTERM set the returned flag: the run then ends with the certificate of its last
+/// complete level. A second signal ends the program at once.
 [[nodiscard]] const std::atomic<bool>& stop_on_signals();
 
-/// The case that a command is about. All commands throw InputError for bad input.
+/// The case of a command. All commands throw InputError for bad input.
 struct CaseRequest
 {
   std::string case_file;
@@ -50,22 +50,22 @@ struct CaseRequest
 };
 
 /// `tribound run`: solves the case and writes its results, see app/command/run.h, on all processes that were
-/// started together, which may be one. With `restart`, a directory of results or a checkpoint in one, it goes
-/// on with the case there instead. The first process reads the mesh, prints and writes what is not of each.
-/// What fails on all of them the first one tells; what fails on one alone ends all. Of one process it throws
-/// InputError, SolveError and WriteError.
+/// started together, possibly one. With `restart`, an output directory or a checkpoint in one, it continues
+/// the case there instead. The first process reads the mesh, prints, and writes everything that is not
+/// written by each. A failure on all processes is reported by the first; a failure on one process alone ends
+/// all. On a single process it throws InputError, SolveError and WriteError.
 [[nodiscard]] ExitCode run(const CaseRequest& request, const std::string& restart);
 
-/// `tribound check`: reads and verifies everything `run` would, and prints a summary with what the doctor
-/// finds, for people or as JSON.
+/// `tribound check`: reads and verifies everything `run` would, and prints a summary with the findings of the
+/// doctor, as text or as JSON.
 void check(const CaseRequest& request, bool as_json);
 
-/// `tribound verify`: solves the case on its mesh without adaptation, and computes for every Newton iterate
-/// the bound and the dual norm of the residual from below, for the last one also the errors against a
+/// `tribound verify`: solves the case on its mesh without adaptation. For every Newton iterate it computes
+/// the bound, and the dual norm of the residual from below; for the last one also the errors against a
 /// solution of higher degree on the mesh refined `refinements` times; over load steps the iterates of each.
 /// The intervals of the quantities at every iterate are compared with those of that solution. Prints a table
-/// and writes verify.json. Throws InputError also when the spaces would be too large, and SolveError also
-/// when the bound is below the dual norm of any iterate, when intervals have no common point or when Newton's
+/// and writes verify.json. Throws InputError also when the spaces would be too large. Throws SolveError also
+/// when the bound is below the dual norm of any iterate, when intervals do not intersect or when Newton's
 /// method does not converge; verify.json is written before.
 [[nodiscard]] ExitCode verify(const CaseRequest& request, int refinements);
 
@@ -79,23 +79,22 @@ void check(const CaseRequest& request, bool as_json);
 /// interruption; failed when an effectivity is below 1 or a variant has no solution.
 [[nodiscard]] ExitCode study(const CaseRequest& request);
 
-/// What a case is solved with: all combinations of `values`, keys with values, or the rows of the file
+/// The values a case is solved with: all combinations of `values`, keys with values, or the rows of the file
 /// `table`.
 struct SweepRequest : CaseRequest
 {
   std::vector<std::string> values;
   std::string table;
   int jobs = 1;         ///< processes at a time
-  bool resume = false;  ///< keep what an earlier sweep has completed
+  bool resume = false;  ///< keep the completed runs of an earlier sweep
 };
 
-/// `tribound sweep`: solves all these cases, a process for each, into a directory of its own below `sweep` in
-/// output.directory. Throws InputError for a value that no case takes, before anything is solved.
-/// Success: all certified; budget_used_up: some not, or interrupted; failed: some failed; bad_input: some
-/// were refused.
+/// `tribound sweep`: solves all these cases, one process each, each into its own directory below `sweep` in
+/// output.directory. Throws InputError for invalid values before anything is solved. Success: all certified;
+/// budget_used_up: some not, or interrupted; failed: some failed; bad_input: some were rejected.
 [[nodiscard]] ExitCode sweep(const SweepRequest& request);
 
-/// The cases that `init` knows, in the order of app/templates.
+/// The cases available to `init`, in the order of app/templates.
 [[nodiscard]] std::vector<std::string> template_names();
 
 /// `tribound init`: writes the commented case NAME.toml, with NAME.geo where it needs one, into the directory

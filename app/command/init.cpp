@@ -16,7 +16,7 @@ namespace tribound::app
 namespace
 {
 
-/// The name of the case it belongs to; empty: of none.
+/// The name of the case it belongs to; empty: none.
 std::string stem(const EmbeddedFile& file)
 {
   return file.name.ends_with(".md") ? "" : std::filesystem::path(file.name).stem().string();

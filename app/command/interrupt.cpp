@@ -1,5 +1,5 @@
 /// @file interrupt.cpp
-/// Signals: Ctrl-C ends a run in order, a closed pipe does not, a crash ends it with a message.
+/// Signals: Ctrl-C ends a run cleanly, a closed pipe does not end it, a crash ends it with a message.
 
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace
 
 std::atomic<bool> stop_requested = false;
 
-constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGUSR1};  // the last by way of mpirun
+constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGUSR1};  // the last one comes by way of mpirun
 
 void request_stop(int)
 {
@@ -26,7 +26,7 @@ void request_stop(int)
   for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
 }
 
-/// Calls only what may be called in a signal handler.
+/// Calls only async-signal-safe functions.
 void report_crash(int)
 {
   constexpr std::string_view text =
@@ -36,7 +36,7 @@ void report_crash(int)
   ::_exit(static_cast<int>(ExitCode::failed));
 }
 
-/// The handler has a stack of its own: one that has overflowed is of no use.
+/// The handler has its own stack, since an overflowed one is unusable.
 void catch_crashes()
 {
   static std::array<char, 1 << 16> memory;

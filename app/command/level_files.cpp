@@ -16,7 +16,7 @@ namespace tribound::app
 namespace
 {
 
-/// Cells of several ranks that are gathered on one.
+/// The maximal number of cells of several ranks gathered on one.
 constexpr std::int64_t most_in_one = 1'000'000;
 
 /// eta_tot and the components cell by cell, for the VTU file.
@@ -35,7 +35,7 @@ std::vector<std::pair<std::string, std::vector<double>>> cell_components(const c
   return columns;
 }
 
-/// The boundaries of the mesh that the case does not mention: they are free.
+/// The boundaries of the mesh that the case does not mention; they are free.
 std::vector<std::string> free_sides(const case_file::Config& config,
                                     std::span<const std::string> boundary_names)
 {
@@ -55,7 +55,7 @@ std::shared_ptr<const KeptLevel<dim>> KeptLevel<dim>::gathered(const adapt::Leve
                                                                const adapt::Method& method)
 {
   if (!view.discrete.mesh.partition()) return kept;
-  // In 3D the page shows the surface, and of few cells the inside; without it contact is all that is shown.
+  // In 3D the page shows the surface, and the interior if there are few cells; otherwise only contact.
   const std::int64_t most = dim == 2 ? most_in_one : static_cast<std::int64_t>(PageLimits().volume);
   const bool is_small = view.discrete.mesh.n_global_cells() <= most;
   std::optional<adapt::Excerpt<dim>> excerpt = output.report && (is_small || (dim == 2 && !kept->t))

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file level_files.h
-/// A level or load step kept beyond its turn in the loop, and its files.
+/// A level or load step kept beyond its turn in the loop, and its output files.
 
 #include <filesystem>
 #include <memory>
@@ -18,14 +18,14 @@
 namespace tribound::app
 {
 
-/// A level that is still needed when the loop goes on.
+/// A level that is still needed when the loop continues.
 template <int dim>
 struct KeptLevel
 {
   explicit KeptLevel(const adapt::LevelView<dim>& view, const std::optional<double>& load_factor = {})
       : number(view.number), t(load_factor), discrete(view.owner), level(view.level)
   {
-    level.equilibrium.reset();  // factors are large, and no more steps are to come
+    level.equilibrium.reset();  // factors are large, and no further steps follow
   }
   KeptLevel(int n, const std::optional<double>& load_factor, adapt::Excerpt<dim> excerpt)
       : number(n),
@@ -36,8 +36,8 @@ struct KeptLevel
   {
   }
 
-  /// What the first rank shows of a level whose owner keeps it as `kept`: that, or of several ranks their
-  /// cells put together; null on the others.
+  /// What the first rank shows of a level whose owner keeps it as `kept`: that level or, on several ranks,
+  /// the gathered cells; null on the other ranks.
   [[nodiscard]] static std::shared_ptr<const KeptLevel> gathered(const adapt::LevelView<dim>& view,
                                                                  std::shared_ptr<const KeptLevel> kept,
                                                                  const case_file::OutputConfig& output,
@@ -58,15 +58,15 @@ struct KeptLevel
                     std::span<const io::CellField> further = {}) const;
   /// Writes contact.csv. Throws WriteError.
   void write_contact(const std::filesystem::path& directory) const;
-  /// Writes the mesh as adapted.msh where it is wanted; boundaries that the case does not mention have no
-  /// group there. All ranks call it together, each with its own level. Throws WriteError.
+  /// Writes the mesh as adapted.msh if requested; boundaries that the case does not mention have no group
+  /// there. All ranks call it together, each with its own level. Throws WriteError.
   void write_mesh(const case_file::Config& config) const;
 
   int number;
   std::optional<double> t;  ///< of a load step
   std::shared_ptr<const adapt::Discretisation<dim>> discrete;
   adapt::CertifiedLevel<dim> level;
-  bool is_merged = false;  ///< whether cells of several ranks were put together to be few enough
+  bool is_merged = false;  ///< whether cells of several ranks were merged to reduce their number
 };
 
 }  // namespace tribound::app

@@ -1,5 +1,5 @@
 /// @file path_report.cpp
-/// What a run over load steps tells and leaves behind beside what runs over levels do: passes over the path.
+/// Output of a run over load steps in addition to that of a run over levels: passes over the path.
 
 #include <fmt/format.h>
 
@@ -80,7 +80,7 @@ void RunReport<dim>::write_checkpoint(const adapt::ReplayState<dim>& state)
         });
 }
 
-/// The worst step has no record yet where it is solved again on the next mesh.
+/// The worst step has no record yet if it is solved again on the next mesh.
 template <int dim>
 void RunReport<dim>::add_mesh(const adapt::PassView<dim>& pass)
 {
@@ -106,7 +106,7 @@ template <int dim>
 bool RunReport<dim>::give_up()
 {
   if (!is_apart_) return false;
-  (void)finish_writing();  // of files that are removed
+  (void)finish_writing();  // errors in files that are removed do not matter
   ranks_.on_first([&] { io::remove_series_directory(fields_directory()); });
   is_apart_ = false;
   if (before_)

@@ -1,6 +1,6 @@
 /// @file report_files.cpp
-/// The files of a run, in an order in which none ever says more than the certificate beside it: what
-/// described another level is removed, then the certificate is written, then the fields.
+/// The files of a run, written in an order such that they never claim more than the certificate: files about
+/// another level are removed, then the certificate is written, then the fields.
 
 #include <algorithm>
 #include <exception>
@@ -16,20 +16,20 @@ namespace tribound::app
 namespace
 {
 
-/// Seconds of work that a program which is killed may lose: the first levels take less time than files.
+/// Seconds of work that a killed program may lose. The first levels take less time than writing files.
 constexpr double most_lost = 1.0;
 
-/// So many times as long as it takes to write certificate and tables, whose size grows with the number of
-/// load steps, passes until they are written again: they never take more than a small part of a run.
+/// Certificate and tables, whose size grows with the number of load steps, are rewritten only after this many
+/// times their writing time, so that they never take more than a small part of a run.
 constexpr double least_share = 20;
 
-/// What shows the last level alone.
+/// Removes files that show only the last level.
 void remove_last_shown(const std::filesystem::path& directory)
 {
   io::remove_results(directory, {"contact.csv", "adapted.msh", "report.html"});
 }
 
-/// What writing throws, to be thrown again when the level is printed, on all ranks.
+/// Returns the exception of writing, to be rethrown on all ranks once the level is printed.
 template <typename Write>
 std::exception_ptr failure_of(const Write& write)
 {
@@ -92,7 +92,7 @@ void RunReport<dim>::make_room()
   must_write_ = must_write_ || is_first;  // the certificate that is there is of what was removed
 }
 
-/// The files of a complete pass take the place of those of the one before: they wait for the certificate.
+/// The files of a complete pass replace those of the previous one, after the certificate.
 template <int dim>
 void RunReport<dim>::hand_over_pass()
 {
@@ -113,7 +113,7 @@ void RunReport<dim>::start_writing()
 {
   const bool is_kept = is_path() || record_.levels.back().bound;
   const bool has_files = is_kept && writes_all() && !is_path();
-  if (has_files && ranks_.size() > 1) in_work_.last->write_mesh(config_);  // all together, thus not beside
+  if (has_files && ranks_.size() > 1) in_work_.last->write_mesh(config_);  // all together: not in background
   background_.start(
       [this, has_files, level = is_kept ? in_work_.last : nullptr, shown = is_kept ? in_work_.shown : nullptr,
        is_followed = is_path() || record_.status == certify::RunStatus::budget]
@@ -165,7 +165,7 @@ bool RunReport<dim>::has_news() const
 {
   if (directory_holds_) return false;
   if (!is_restarted() || !record_.levels.empty()) return true;
-  // A run that was killed between its last step and the certificate.
+  // Left by a run that was killed between its last step and the certificate.
   const std::filesystem::path steps = config_.output.directory / io::unfinished_steps;
   return is_path() && ranks_.on_first([&] { return std::filesystem::exists(steps); });
 }

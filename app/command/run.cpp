@@ -46,7 +46,7 @@ ExitCode exit_code(certify::RunStatus status)
 namespace
 {
 
-/// doctor::slides_as_a_whole() as far as this rank has a whole mesh; elsewhere nothing slides.
+/// doctor::slides_as_a_whole() if this rank has a whole mesh; otherwise nothing slides.
 template <int dim>
 std::vector<bool> slides_as_a_whole(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                     const mesh::Mesh<dim>* whole)
@@ -100,8 +100,8 @@ certify::Verdict go_through_levels(const case_file::Config& config, adapt::Level
   return adapt::adapt(levels, strategy);
 }
 
-/// The path that has been followed to its end, once more with half the steps on a finer mesh than that of its
-/// last step; `grid`: of a run that had no step left to do.
+/// Follows a completed path once more, with half the steps on a finer mesh than that of its last step;
+/// `grid`: for a run that had no step left to do.
 template <int dim>
 void check_history(const case_file::Config& config, const problem::Problem<dim>& problem,
                    std::shared_ptr<const adapt::Grid<dim>> grid, const std::atomic<bool>& stop,
@@ -153,7 +153,7 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
   certify::Verdict verdict = config.history->refine == case_file::Refine::transfer
                                  ? adapt::transfer<dim>(*path, program, strategy, observer, state)
                                  : adapt::replay<dim>(std::move(path), program, strategy, observer, state);
-  path.reset();  // its factors are in the way
+  path.reset();  // its factors take memory
   if (!config.history->check || !certify::is_bound(verdict.status)) return verdict;
   report.end(verdict);  // should the program be killed during the check, nothing else is lost
   check_history<dim>(config, problem, std::move(grid), stop, progress, report);
@@ -183,7 +183,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
       report.fail(error.what());
       throw;
     }
-    catch (const InputError& error)  // data that are not valid on a finer mesh, or at a later t
+    catch (const InputError& error)  // data that are invalid on a finer mesh, or at a later t
     {
       report.fail(error.what());
       throw;
@@ -223,7 +223,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
   const problem::Problem<dim> given(case_file::resolve(config, mesh));
   const problem::Problem<dim> problem =
       config.history ? given.at(config.history->program.targets.front()) : given;
-  (void)case_file::moment_point<dim>(config.output, mesh);  // throws where it has the wrong length
+  (void)case_file::moment_point<dim>(config.output, mesh);  // throws for a wrong length
   (void)case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file run.h
-/// A run, once its case and its mesh are read.
+/// A run whose case and mesh have been read.
 
 #include <filesystem>
 #include <memory>
@@ -18,22 +18,22 @@ namespace tribound::app
 
 [[nodiscard]] ExitCode exit_code(certify::RunStatus status);
 
-/// A run that goes on where another one was.
+/// Data of a run that continues another one.
 struct Restart
 {
   io::CheckpointFacts facts;
   std::vector<Index> cells;    ///< of the mesh, in the order of their values
-  std::vector<double> values;  ///< as io::CheckpointCells has them
+  std::vector<double> values;  ///< as in io::CheckpointCells
   std::vector<double> points;
   bool is_apart =
-      false;  ///< whether it is in a pass after the first, whose files are apart until it is complete
+      false;  ///< whether it is in a pass after the first, whose files are separate until it is complete
   std::filesystem::path file{};  ///< the checkpoint
 };
 
 /// Runs the adaptive algorithm on the case, or follows its load steps on meshes that become fine enough for
-/// all of them, and writes the results as it goes; on several ranks all call it, each with its part of the
-/// mesh, and the first with the `whole` first mesh or one like it, see adapt::Levels. With `restart` the mesh
-/// is that of a later level or load step. Throws InputError, SolveError and WriteError.
+/// all of them, and writes the results on the way. On several ranks all call it, each with its part of the
+/// mesh, and the first also with the `whole` first mesh or an equivalent one, see adapt::Levels. With
+/// `restart` the mesh is that of a later level or load step. Throws InputError, SolveError and WriteError.
 template <int dim>
 [[nodiscard]] ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
                            std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr,

@@ -32,8 +32,8 @@ namespace tribound::app
 namespace
 {
 
-/// A variable that mpirun or a batch system sets for the processes they start together: of Open MPI, or of
-/// MPICH and its relatives; `otherwise` where there is none.
+/// A variable set by mpirun or a batch system for the processes they start together: of Open MPI, or of MPICH
+/// and its relatives; `otherwise` if there is none.
 int launcher_says(std::array<const char*, 2> variables, int otherwise)
 {
   for (const char* variable : variables)
@@ -41,14 +41,14 @@ int launcher_says(std::array<const char*, 2> variables, int otherwise)
   return otherwise;
 }
 
-/// What a run goes on from.
+/// The checkpoint that a run continues from.
 struct Checkpoint
 {
   std::filesystem::path file;
   io::CheckpointFacts facts;
 };
 
-/// That of a directory of results, or one of several there.
+/// The checkpoint of an output directory, or a given one of several there.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& place, const Ranks& ranks)
 {
   if (place.empty()) return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& place, co
   return Checkpoint{file, io::read_checkpoint_facts(file, ranks)};
 }
 
-/// Whether a checkpoint is that of a pass after the first that was not complete.
+/// Whether a checkpoint belongs to an incomplete pass after the first.
 bool is_of_unfinished_pass(const std::filesystem::path& file)
 {
   const std::filesystem::path directory = file.parent_path();
@@ -65,13 +65,13 @@ bool is_of_unfinished_pass(const std::filesystem::path& file)
          (file.filename() == io::checkpoint_name && std::filesystem::exists(directory / io::unfinished_pass));
 }
 
-/// The case of a checkpoint, whose results go on in the directory.
+/// The case of a checkpoint, whose results are continued in the same directory.
 case_file::Config restarted_config(const CaseRequest& request, const Checkpoint& from)
 {
   const io::CheckpointFacts& checkpoint = from.facts;
   std::filesystem::path directory = from.file.has_parent_path() ? from.file.parent_path() : ".";
   if (directory.filename() == io::unfinished_pass) directory /= "..";
-  // Before the others: paths of the effective case lead from there.
+  // Before the others, because paths of the effective case are relative to it.
   std::vector<std::string> overrides = {fmt::format("output.directory='{}'", directory.string())};
   overrides.insert(overrides.end(), request.overrides.begin(), request.overrides.end());
   case_file::Config config =
@@ -89,11 +89,11 @@ case_file::Config restarted_config(const CaseRequest& request, const Checkpoint&
   return config;
 }
 
-/// What one process does that neither shares its mesh out nor goes on.
+/// The work of one process that neither distributes its mesh nor continues a run.
 template <int dim>
 ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
 {
-  const algebra::Environment environment;  // behind the input: bad input then fails at once
+  const algebra::Environment environment;  // after the input, so that bad input fails at once
   if (Ranks::world().size() > 1)
     throw InputError(
         {}, fmt::format("{} processes were started by a launcher that is not known", Ranks::world().size()),
@@ -101,7 +101,7 @@ ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const 
   return run(config, std::move(mesh), progress);
 }
 
-/// `whole`: on the first rank the mesh, or of boxes, where each rank makes its own cells, a coarser one.
+/// `whole`: on the first rank the mesh or, for boxes, where each rank makes its own cells, a coarser one.
 template <int dim>
 ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
                         std::optional<mesh::AnyMesh> whole, const std::optional<Checkpoint>& checkpoint,
@@ -166,10 +166,10 @@ ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::strin
   return run_in(ranks, config, std::exchange(whole, {}), checkpoint, progress);
 }
 
-/// One for each of several processes, where the environment does not say how many.
+/// One thread for each of several processes, unless the environment sets the number.
 void limit_threads()
 {
-  if (std::getenv("OMP_NUM_THREADS")) return;  // for OpenBLAS, too
+  if (std::getenv("OMP_NUM_THREADS")) return;  // also applies to OpenBLAS
   set_max_threads(1);
   if (!std::getenv("OPENBLAS_NUM_THREADS")) algebra::set_blas_threads(1);
 }

@@ -125,7 +125,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   record_.levels.push_back(std::move(level));
   if (step || record_.levels.back().bound)
   {
-    in_work_.shown.reset();  // makes room for this one
+    in_work_.shown.reset();  // makes room for this level
     in_work_.last.reset();
     in_work_.last =
         std::make_shared<const KeptLevel<dim>>(view, step ? std::optional(step->t) : std::nullopt);
@@ -145,7 +145,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   if (!again) print_level(record_.levels.back());
   rethrow(failure);
   make_room();
-  if (is_due()) write_record();  // which moves the directory of the fields before
+  if (is_due()) write_record();  // also moves the directory of the previous fields
   if (is_path()) ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
   ranks_.together([&] { start_writing(); });
   count_time(begin);
@@ -170,7 +170,7 @@ void RunReport<dim>::write_checkpoint(const adapt::Levels<dim>& next)
   const fem::LagrangeSpace<dim>& space = next.discrete().space;
   try
   {
-    rethrow(finish_writing());  // the files of the level before come first
+    rethrow(finish_writing());  // the files of the previous level come first
     io::write_checkpoint<dim>(
         config_.output.directory / io::checkpoint_name,
         {dim, space.degree(), next.start(), record_.effective.text, io::as_earlier(record_), {}}, space,

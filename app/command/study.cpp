@@ -34,7 +34,7 @@ namespace tribound::app
 namespace
 {
 
-/// A run that is over.
+/// A completed run.
 template <int dim>
 struct FinishedRun
 {
@@ -43,7 +43,7 @@ struct FinishedRun
   std::vector<KeptLevel<dim>> levels;
 };
 
-/// The richest space of at most `max_dofs` in which the dual norm can be looked for, if there is one.
+/// The richest space of at most `max_dofs` in which the dual norm can be computed, if there is one.
 template <int dim>
 std::optional<certify::RicherSpace> dual_space(const fem::LagrangeSpace<dim>& space, long max_dofs)
 {
@@ -93,13 +93,13 @@ class StudyCommand
   }
 
  private:
-  /// As `tribound run` does it, from the mesh of the case. `own_limit`: how the reason ends for a limit that
-  /// is not of the case; `keeps_all`: its levels, else the last.
+  /// Runs like `tribound run`, from the mesh of the case. `own_limit`: end of the reason for a limit that is
+  /// not from the case; `keeps_all`: keeps all levels, else the last.
   FinishedRun<dim> adapt_and_report(const case_file::Config& config, bool keeps_all,
                                     const std::string& own_limit = {})
   {
     FinishedRun<dim> finished;
-    // Bisected nowhere, the mesh is copied.
+    // Without marked cells, bisection copies the mesh.
     auto first = std::make_unique<adapt::Discretisation<dim>>(mesh::bisect<dim>(mesh_, {}).mesh, problem_,
                                                               config.method);
     adapt::Levels<dim> levels(problem_, config.method, config.adapt.tolerance, std::move(first), &stop_);
@@ -198,7 +198,7 @@ class StudyCommand
     study_.times.emplace_back("errors", seconds_since(begin));
   }
 
-  /// Adds them to the report page of the variant.
+  /// Adds the errors to the report page of the variant.
   void show_errors(const StudyVariant& variant) const
   {
     std::vector<TrueErrors> errors;
@@ -227,7 +227,7 @@ class StudyCommand
                         {{{"energy_error", error.energy}, {"stress_error", error.stress}}});
   }
 
-  /// What is complete so far.
+  /// Writes what is complete so far.
   void write() const
   {
     io::write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
@@ -263,7 +263,7 @@ class StudyCommand
   const std::atomic<bool>& stop_;
   Clock::time_point begin_ = Clock::now();
   Study study_;
-  std::vector<std::vector<KeptLevel<dim>>> levels_;  ///< of the variants
+  std::vector<std::vector<KeptLevel<dim>>> levels_;  ///< of each variant
   std::optional<KeptLevel<dim>> reference_;
 };
 

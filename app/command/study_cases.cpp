@@ -17,13 +17,13 @@ case_file::Config variant_config(const case_file::Config& config, const std::str
   else if (config.method.stopping.criterion == adapt::Stopping::tolerance)
     variant.method.stopping.criterion = adapt::Stopping::adaptive;
   if (name.starts_with("uniform")) variant.adapt.marking.strategy = adapt::Marking::uniform;
-  variant.method.stopping.finish = false;  // stopping criteria are what is compared
+  variant.method.stopping.finish = false;  // the study compares stopping criteria
   if (config.adapt.bars.levels != adapt::EnergyLevels::off)
     variant.adapt.bars.levels = adapt::EnergyLevels::every;  // for its effectivity
   variant.output.directory /= name;
-  variant.effective = {};  // that of the study stands beside its tables
+  variant.effective = {};  // that of the study is next to its tables
   variant.output.vtu = config.output.vtu && !converged;
-  variant.output.levels = case_file::FieldLevels::all;  // each gets its errors in the end
+  variant.output.levels = case_file::FieldLevels::all;  // each gets its errors at the end
   variant.output.mesh = false;
   return variant;
 }
@@ -39,7 +39,7 @@ case_file::Config reference_config(const case_file::Config& config, double requi
   reference.method.stopping.finish = false;
   reference.adapt.tolerance = required;
   reference.adapt.measure = adapt::ErrorMeasure::residual;
-  reference.adapt.bars = {};  // no demands
+  reference.adapt.bars = {};  // no requirements
   if (config.adapt.bars.levels != adapt::EnergyLevels::off)
     reference.adapt.bars.levels = adapt::EnergyLevels::last;
   reference.adapt.max_levels = std::numeric_limits<int>::max();

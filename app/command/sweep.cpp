@@ -34,15 +34,15 @@ namespace tribound::app
 namespace
 {
 
-/// A variable of the environment, left alone where the user has set it.
+/// Sets an environment variable unless the user has set it.
 void limit_threads(int n_threads)
 {
   for (const char* name : {"OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"})
     ::setenv(name, fmt::format("{}", n_threads).c_str(), 0);
 }
 
-/// Starts this program with stdout and stderr in a file, in a process group of its own: Ctrl-C reaches the
-/// sweep alone, which ends its runs in order.
+/// Starts this program with stdout and stderr in a file, in its own process group: Ctrl-C reaches only the
+/// sweep, which ends its runs cleanly.
 pid_t start(std::vector<std::string> arguments, const std::filesystem::path& log)
 {
   std::vector<char*> words;
@@ -80,11 +80,12 @@ case_file::SweepTable table_of(const SweepRequest& request)
   return case_file::sweep_rows(io::read_text(file), file);
 }
 
-/// Reads a mesh file of many runs once. What the file itself reads, such as the .step of a .geo, is not seen.
+/// Hashes each mesh file once for all runs. Files read by the mesh file, such as the .step of a .geo, are not
+/// included.
 class MeshHashes
 {
  public:
-  /// Empty without a file, or where it cannot be read, which its run will say.
+  /// Empty without a file, or where it cannot be read, which the run itself will report.
   const std::string& operator()(const mesh::MeshSource& source)
   {
     const auto* file = std::get_if<mesh::MeshFile>(&source);
@@ -122,7 +123,7 @@ class Sweep
     }
   }
 
-  /// Ends the runs that an exception would leave alone.
+  /// Ends the runs that would be orphaned by an exception.
   ~Sweep()
   {
     end_all();
@@ -185,11 +186,11 @@ class Sweep
   void start_next()
   {
     SweepRun& run = record_.runs[next_++];
-    if (run.exit_code) return;  // of an earlier sweep
+    if (run.exit_code) return;  // done in an earlier sweep
     const std::filesystem::path directory = directory_ / run.name;
     std::filesystem::create_directories(directory);
     io::remove_results(directory,
-                       {"certificate.json", "contact.csv"});  // a run that ends early would leave them
+                       {"certificate.json", "contact.csv"});  // a run that ends early would keep them
     std::vector<std::string> arguments = {"tribound", "run", request_.case_file, "--quiet"};
     for (const std::string& assignment : overrides(run))
     {
@@ -199,7 +200,7 @@ class Sweep
     running_[start(std::move(arguments), directory / "log.txt")] = &run;
   }
 
-  /// Takes note of a run that has ended.
+  /// Records a run that has ended.
   void finish(pid_t child, int status)
   {
     SweepRun& run = *running_.at(child);

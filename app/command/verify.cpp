@@ -31,7 +31,7 @@ namespace tribound::app
 namespace
 {
 
-/// The dual norm is looked for in degree p + 2, the reference solution in p + 1 (no solver goes beyond 4).
+/// The dual norm is computed in degree p + 2, the reference solution in p + 1 (no solver goes beyond 4).
 certify::RicherSpace dual_space(const case_file::Config& config, int refinements)
 {
   return {.refinements = refinements, .degree = config.method.degree + 2};
@@ -42,8 +42,8 @@ certify::RicherSpace solution_space(const case_file::Config& config, int refinem
   return {.refinements = refinements, .degree = std::min(config.method.degree + 1, 4)};
 }
 
-/// Above, the factorisations take more than about ten gigabytes (seen: 3.4 for a million in 2D with degree
-/// 2).
+/// Beyond this, the factorisations need more than about ten gigabytes (observed: 3.4 for a million in 2D with
+/// degree 2).
 template <int dim>
 constexpr double largest_problem = dim == 2 ? 3e6 : 1e6;
 
@@ -65,7 +65,7 @@ void check_size(const case_file::Config& config, const mesh::Mesh<dim>& mesh, in
                                             fewer, n_dofs(fewer)));
 }
 
-/// work(), its wall time noted as that of a stage.
+/// Calls work() and records its wall time as that of a stage.
 template <class Work>
 auto timed(const std::string& stage, Verification& result, const Work& work)
 {
@@ -91,7 +91,7 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
   return iterate;
 }
 
-/// Newton's method on a form from `start`, each of its iterates verified and added to `result`, with the
+/// Runs Newton's method on a form from `start`; verifies each iterate and adds it to `result`, with the
 /// intervals of the quantities, if there are any.
 template <int dim>
 solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, std::span<const double> start,
@@ -119,12 +119,12 @@ solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, 
     return regularisation->advise(form, iterate, eta.global, iterate.converged);
   };
   algebra::SolverOptions solver = config.method.solver;
-  solver.tolerance = 0;  // as far as rounding lets it be: the identities are not what is to fail
+  solver.tolerance = 0;  // as accurate as rounding allows, so that identities do not fail for it
   return solve::solve<dim>(form, start, options, solver, observer);
 }
 
-/// The iterates of a committed load step, once more from where they began: its form still has the history
-/// that the step before has left.
+/// Repeats the iterates of a committed load step from their start: its form still has the history left by the
+/// previous step.
 template <int dim>
 void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> start,
                  const case_file::Config& config, Verification& result, const Progress& progress)
@@ -148,7 +148,7 @@ void verify_step(const adapt::LoadStep<dim>& step, std::span<const double> start
 
 constexpr const char* announcement = "solving, with bound and dual norm of every iterate";
 
-/// Once the input is known to be good: takes the directory and prints what is going to be verified.
+/// Called once the input is known to be valid: takes the directory and prints what will be verified.
 template <int dim>
 std::unique_ptr<io::OutputDirectory> begin(const case_file::Config& config,
                                            const problem::Problem<dim>& problem,
@@ -162,7 +162,7 @@ std::unique_ptr<io::OutputDirectory> begin(const case_file::Config& config,
   return directory;
 }
 
-/// Not empty: why the load steps end before the last one.
+/// Returns why the load steps end before the last one; empty: they do not.
 template <int dim>
 std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
                         const case_file::Config& config, Verification& result, const Progress& progress,
@@ -187,7 +187,7 @@ std::string verify_path(const problem::Problem<dim>& problem, mesh::Mesh<dim> me
   return why;
 }
 
-/// The richer solution, and the bound of the error of the solution in the energy norm.
+/// The richer solution, and the bound of the solution's error in the energy norm.
 template <int dim>
 void verify_solution(const contact::NitscheForm<dim>& form, std::span<const double> u,
                      const case_file::Config& config, const std::vector<problem::Quantity<dim>>& quantities,
@@ -196,7 +196,7 @@ void verify_solution(const contact::NitscheForm<dim>& form, std::span<const doub
   const certify::RicherSpace space = solution_space(config, result.refinements);
   const double gamma0 = config.method.gamma0.value_or(contact::default_gamma0(space.degree));
   solve::NewtonOptions newton = config.method.newton;
-  newton.damping = true;  // undamped steps may cycle; they are not what is verified here
+  newton.damping = true;  // undamped steps may cycle, and are not being verified here
   const auto bound_richer = [&](const contact::NitscheForm<dim>& richer, std::span<const double> richer_u)
   {
     if (!quantities.empty())
@@ -215,7 +215,7 @@ void verify_solution(const contact::NitscheForm<dim>& form, std::span<const doub
   result.energy = timed("energy", result, [&] { return adapt::energy_bound<dim>(form, config.method, u); });
 }
 
-/// Not empty: why there is no solution.
+/// Returns why there is no solution; empty: there is one.
 template <int dim>
 std::string verify_single(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                           const case_file::Config& config, Verification& result, const Progress& progress,

@@ -13,7 +13,7 @@
 namespace tribound::app
 {
 
-/// work(config, mesh) in the dimension of the mesh; `stop` may end the reading.
+/// Calls work(config, mesh) in the dimension of the mesh; `stop` may interrupt reading.
 template <class Work>
 auto with_case(const CaseRequest& request, const std::atomic<bool>* stop, const Work& work)
 {

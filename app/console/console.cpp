@@ -26,7 +26,7 @@ std::size_t name_width(const Parts& parts)
   return width;
 }
 
-/// What numbers without a unit behind them are in; nothing where the case names no units.
+/// The units of numbers printed without a unit; empty where the case names none.
 std::string units_line(const io::CaseFacts& facts)
 {
   if (!facts.units.are_named()) return {};

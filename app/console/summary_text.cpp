@@ -43,7 +43,7 @@ std::string sliding_line(const io::Resultants& r)
                                      state->sliding_factor, state->coefficient, safety));
 }
 
-/// Component by component with its share of the sum of squares.
+/// Each component with its share of the sum of squares.
 std::string component_lines(const certify::BoundComponents& components, const certify::RunKind& kind)
 {
   constexpr double round_off = 1e-9;  // as on the page
@@ -71,7 +71,7 @@ double largest(std::span<const double> values, double start)
   return start;
 }
 
-/// Rounding is not shown as digits.
+/// Values at rounding level are shown without digits.
 std::string cell(double value, double scale)
 {
   return fmt::format("{:>13.6g}", std::abs(value) > 1e-9 * scale ? value : 0.0);
@@ -119,7 +119,7 @@ std::string path_text(const adapt::PathEnd& path)
   return text;
 }
 
-/// The path followed once more, where it was.
+/// The check of the path, if there was one.
 std::string comparison_text(const io::RunRecord& run)
 {
   if (!run.check) return {};
@@ -141,10 +141,10 @@ std::string comparison_text(const io::RunRecord& run)
 }
 
 constexpr std::size_t fewest_levels = 3;
-/// Slower than this nothing is known of what is to come.
+/// For slower rates no forecast is made.
 constexpr double slowest_rate = -0.05;
 
-/// Two digits: it is a guess.
+/// Two digits, since it is an estimate.
 std::string count_in_words(double n)
 {
   if (!(n < 1e9)) return "more than 10^9";

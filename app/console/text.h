@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file text.h
-/// What the texts on the screen share.
+/// Common functions for the texts on the screen.
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ constexpr std::size_t caption_width = 14;
   return text.empty() ? std::string{} : line(caption, text);
 }
 
-/// A line broken into several of at most 80 characters, the later ones indented below the first.
+/// A text broken into lines of at most 80 characters, the later ones indented below the first.
 [[nodiscard]] std::string paragraph(std::string_view caption, std::string_view text);
 
 /// "1 cell", "2 cells".
@@ -43,7 +43,7 @@ constexpr std::size_t caption_width = 14;
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-/// Writes to stdout at once. A reader that has gone, such as `head`, is no reason to end, nor to throw.
+/// Writes to stdout at once. If the reader is gone, such as `head`, this neither ends the program nor throws.
 inline void print(std::string_view text)
 {
   (void)std::fwrite(text.data(), 1, text.size(), stdout);

@@ -29,7 +29,7 @@ std::string processor_name()
   return {};
 }
 
-/// Now, as in "2024-05-17 09:30 UTC".
+/// The current time, as in "2024-05-17 09:30 UTC".
 std::string date_and_time()
 {
   const std::time_t now = std::time(nullptr);

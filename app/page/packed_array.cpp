@@ -19,7 +19,7 @@ namespace
 /// Compressed, in base64.
 std::string deflated(std::span<const unsigned char> bytes)
 {
-  thread_local const io::Deflate deflate(io::Deflate::fastest);  // most arrays are small, and they are many
+  thread_local const io::Deflate deflate(io::Deflate::fastest);  // there are many small arrays
   thread_local std::vector<std::byte> compressed;
   compressed.resize(std::max(compressed.size(), deflate.bound(bytes.size())));
   return base64(deflate(std::as_bytes(bytes), compressed));
@@ -36,7 +36,7 @@ std::string packed_bytes(std::span<const std::uint32_t> numbers, int width)
   return deflated(bytes);
 }
 
-/// Each number as its difference from the one `stride` places before.
+/// Each number as its difference from the one `stride` positions before.
 io::Json packed(std::span<const std::uint32_t> numbers, std::size_t stride)
 {
   std::vector<std::uint32_t> codes(numbers.size());

@@ -15,7 +15,7 @@ constexpr int value_bits = 12;
 constexpr int corner_bits = 12;  ///< of a facet
 constexpr int profile_bits = 20;
 
-/// `displacement`: beside which gaps and slips may be round-off.
+/// `displacement`: gaps and slips are round-off relative to this.
 io::Json contact_json(const SurfaceContact& contact, double displacement)
 {
   const double stress = std::max(largest(contact.pressure), largest(contact.limit));
@@ -28,7 +28,7 @@ io::Json contact_json(const SurfaceContact& contact, double displacement)
       {"status", pack_integers(contact.status)}};
 }
 
-/// The name of the boundary of each face with contact, as its place in `names`.
+/// The boundary name of each face with contact, as an index into `names`.
 io::Json boundaries_json(const contact::NitscheForm<3>& form, const Surface& surface)
 {
   const std::size_t n_faces = surface.contact.pressure.size() / surface.n_face_points();
@@ -40,7 +40,7 @@ io::Json boundaries_json(const contact::NitscheForm<3>& form, const Surface& sur
   return {{"names", names}, {"of_faces", pack_integers(tags)}};
 }
 
-/// Those faces of the surface that belong to a boundary.
+/// The faces of the surface that belong to a boundary.
 io::Json faces_json(const contact::NitscheForm<3>& form, const Surface& surface, int tag)
 {
   std::vector<Index> faces;

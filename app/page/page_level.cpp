@@ -16,7 +16,7 @@ namespace tribound::app
 namespace
 {
 
-// Bits per number: beyond what can be seen, and close to what a reader of values wants.
+// Bits per number: more than is visible, and close to what a reader of values needs.
 constexpr int point_bits = 24;
 constexpr int displacement_bits = 16;
 constexpr int stress_bits = 12;
@@ -34,7 +34,7 @@ io::Json stress_json(std::span<const std::vector<double>> stress)
   return components;
 }
 
-/// eta_tot and the components, one number per face; what is zero everywhere is left out.
+/// eta_tot and the components, one number per face; those that are zero everywhere are omitted.
 io::Json eta_json(const Surface& surface, const certify::Estimate& estimate)
 {
   io::Json eta = io::Json::object();
@@ -53,7 +53,7 @@ io::Json eta_json(const Surface& surface, const certify::Estimate& estimate)
   return eta;
 }
 
-/// sigma_zz / (sigma_xx + sigma_yy), region by region.
+/// sigma_zz / (sigma_xx + sigma_yy), by region.
 io::Json out_of_plane_json(const problem::Problem<2>& problem, const mesh::Mesh<2>& mesh)
 {
   io::Json ratios = io::Json::array();
@@ -62,7 +62,7 @@ io::Json out_of_plane_json(const problem::Problem<2>& problem, const mesh::Mesh<
   return ratios;
 }
 
-/// Which region a face lies in.
+/// The region of each face.
 template <int dim>
 io::Json region_json(const Surface& surface, const mesh::Mesh<dim>& mesh)
 {

@@ -14,7 +14,7 @@ namespace tribound::app
 namespace
 {
 
-/// Per vertex the body of its faces.
+/// For each vertex, the body of its faces.
 std::vector<Index> bodies_of_vertices(const Surface& surface, int dim)
 {
   std::vector<Index> body(surface.points.size() / dim);
@@ -23,7 +23,7 @@ std::vector<Index> bodies_of_vertices(const Surface& surface, int dim)
   return body;
 }
 
-/// The vertices of a body by the square or cube of a grid in which they lie: for each the first one there.
+/// For each vertex, the first vertex of the same body in the same square or cube of a grid.
 std::vector<Index> first_in_grid_cell(const Surface& surface, int dim, double width)
 {
   const std::size_t n = surface.points.size() / dim;
@@ -61,7 +61,7 @@ std::size_t n_surviving(const Surface& surface, std::span<const Index> first)
   return n;
 }
 
-/// Keeps the blocks of `size` numbers whose flag is set; those beyond the end of a column do not exist.
+/// Keeps the flagged blocks of `size` numbers; blocks beyond the end of a column do not exist.
 template <typename T>
 void keep(std::vector<T>& column, std::span<const char> kept, std::size_t size)
 {
@@ -72,7 +72,7 @@ void keep(std::vector<T>& column, std::span<const char> kept, std::size_t size)
   column.resize(end);
 }
 
-/// Numbers the vertices anew in the order in which faces mention them.
+/// Renumbers the vertices in the order of their first use by faces.
 void drop_unused_vertices(Surface& surface, int dim)
 {
   std::vector<Index> number(surface.points.size() / dim, -1);
@@ -101,7 +101,7 @@ void merge_details(Surface& surface, int dim, std::size_t max_triangles)
 {
   assert(surface.subdivision == 1);
   const auto [low, high] = std::ranges::minmax(surface.points);
-  double fine = 1e-7 * (high - low);  // nothing is merged
+  double fine = 1e-7 * (high - low);  // too fine to merge anything
   double coarse = high - low;
   while (coarse > 1.2 * fine)
   {

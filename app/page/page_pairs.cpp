@@ -16,7 +16,7 @@ namespace
 
 using Segment = contact::ContactSegment<3>;
 
-/// Per number in Mesh::boundary() the face that shows the facet, -1 where there is none.
+/// For each index in Mesh::boundary(), the face that shows the facet, -1 if there is none.
 std::vector<Index> faces_of_facets(const Surface& surface, std::size_t n_facets)
 {
   std::vector<Index> face_of(n_facets, -1);
@@ -36,7 +36,7 @@ void add_part(FaceParts& parts, Index face, const contact::SegmentSide<3>& side)
   }
 }
 
-/// Those segments between bodies whose slave has this boundary number and whose faces are shown.
+/// The segments between bodies whose slave has this boundary number and whose faces are shown.
 std::vector<std::size_t> shown_segments(const contact::NitscheForm<3>& form, int tag,
                                         std::span<const Index> face_of)
 {
@@ -58,7 +58,7 @@ PairSurface segments_of(const contact::NitscheForm<3>& form, std::span<const dou
   const std::vector<Point<2>> middles = triangle_middles(k, false);
   points.insert(points.end(), middles.begin(), middles.end());
   result.values.resize(shown.size() * n_points, shown.size() * middles.size());
-  constexpr std::size_t batch = 512;  // tables of all segments would be large
+  constexpr std::size_t batch = 512;  // tables of all segments at once would be large
   for (std::size_t first = 0; first < shown.size(); first += batch)
   {
     const std::span<const std::size_t> numbers = shown.subspan(first, std::min(batch, shown.size() - first));
@@ -84,7 +84,7 @@ PairSurface segments_of(const contact::NitscheForm<3>& form, std::span<const dou
 struct FaceMean
 {
   double measure = 0;
-  SurfaceContact values;                      ///< times the measure; of one point
+  SurfaceContact values;                      ///< weighted by the measure; for one point
   std::array<double, 4> measure_of_status{};  ///< by ContactStatus
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file page_pairs.h
-/// What bodies touch each other with, for the report page: in 3D segments on the faces of both sides; and
-/// which way bodies move apart.
+/// Contact between bodies for the report page: in 3D, segments on the faces of both sides; also the
+/// directions in which bodies move apart.
 
 #include <array>
 #include <span>
@@ -17,7 +17,7 @@ namespace tribound::app
 struct FaceParts
 {
   std::vector<Index> faces;
-  /// Three corners each: their coordinates (i, j) / k on the face; empty: the whole faces.
+  /// Three corners each, by coordinates (i, j) / k on the face; empty: the whole faces.
   std::vector<double> corners;
 };
 
@@ -27,27 +27,28 @@ struct PairSurface
   int tag = 0;  ///< of the slave
   int subdivision = 1;
   FaceParts slave{};
-  FaceParts master{};  ///< triangle i lies opposite triangle i of the slave; one of the sides may be absent
+  FaceParts master{};  ///< triangle i is opposite triangle i of the slave; one of the sides may be absent
   SurfaceContact values{};
 };
 
-/// The segments between bodies, a PairSurface for each slave. Beyond limits.segments two: one with means over
-/// the slave's facets, one with means over the master's. Faces that `surface` does not have are left out.
+/// The segments between bodies, one PairSurface for each slave. Beyond limits.segments there are two: one
+/// with means over the slave's facets, one with means over the master's. Faces missing in `surface` are
+/// omitted.
 [[nodiscard]] std::vector<PairSurface> sample_pairs(const contact::NitscheForm<3>& form,
                                                     std::span<const double> u, const Surface& surface,
                                                     const PageLimits& limits = {});
 
-/// Where two bodies touch.
+/// The interface between two bodies.
 template <int dim>
 struct BodyInterface
 {
   std::array<Index, 2> bodies;  ///< slave, master
   double measure = 0;
-  Point<dim> normal = Point<dim>::Zero();  ///< mean of the slave's normals: shorter than 1 where they turn
-  Point<dim> axis = Point<dim>::Zero();  ///< unit vector to which they are orthogonal, as far as there is one
+  Point<dim> normal = Point<dim>::Zero();  ///< mean of the slave's normals: shorter than 1 where they vary
+  Point<dim> axis = Point<dim>::Zero();    ///< unit vector orthogonal to them, as far as there is one
 };
 
-/// Of every pair of different bodies.
+/// For every pair of different bodies.
 template <int dim>
 [[nodiscard]] std::vector<BodyInterface<dim>> body_interfaces(const contact::NitscheForm<dim>& form);
 

@@ -36,7 +36,7 @@ void add_point(ContactProfile& profile, const contact::ContactState<2>& state, d
   profile.status.push_back(static_cast<Index>(state.status));
 }
 
-/// What a joint remembers, and the water in it.
+/// The history of a joint, and its water pressure.
 void add_joint(ContactProfile& profile, const problem::Contact& contact,
                const contact::ContactState<2>& state)
 {
@@ -48,7 +48,7 @@ void add_joint(ContactProfile& profile, const problem::Contact& contact,
   if (contact.water) profile.water.push_back(state.water);
 }
 
-/// Pi(x) for the point number q of the table.
+/// Pi(x) for point number q of the table.
 void add_opposite(ContactProfile& profile, const contact::NitscheForm<2>& form, std::span<const double> u,
                   const contact::SegmentSide<2>& master, const contact::SegmentTable<2>& table, std::size_t q)
 {

@@ -25,7 +25,7 @@ struct Face
   Index facet;  ///< 3D: number in Mesh::boundary()
 };
 
-/// The segments against rigid obstacles, each a facet; they stand before all others.
+/// The segments against rigid obstacles, each a facet; they precede all others.
 template <int dim>
 std::span<const contact::ContactSegment<dim>> obstacle_segments(const contact::NitscheForm<dim>& form)
 {
@@ -45,7 +45,7 @@ std::vector<Face> contact_faces(const contact::NitscheForm<dim>& form)
   return faces;
 }
 
-/// All of them, those of contact_faces() first.
+/// All faces, those of contact_faces() first.
 template <int dim>
 std::vector<Face> all_faces(const contact::NitscheForm<dim>& form)
 {
@@ -60,7 +60,7 @@ std::vector<Face> all_faces(const contact::NitscheForm<dim>& form)
   return faces;
 }
 
-/// The corners of a face in the cell, turning anticlockwise seen from outside.
+/// The corners of a face in the cell, anticlockwise as seen from outside.
 template <int dim>
 std::array<int, 3> corners(int local)
 {
@@ -179,7 +179,7 @@ SurfaceContact sample_contact(const contact::NitscheForm<3>& form, std::span<con
   contact.resize(segments.size() * n, segments.size() * n_middles);
   for (const bool swapped : {false, true})
   {
-    // Facets that turn alike share their tables; they are put in their places afterwards.
+    // Facets with the same orientation share their tables; the values are put in their places afterwards.
     const contact::SegmentTables<3> at_points(form.space().basis(), segments, lattice_points(k, swapped));
     const contact::SegmentTables<3> at_middles(form.space().basis(), segments, triangle_middles(k, swapped));
     for (std::size_t segment = 0; segment < segments.size(); ++segment)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file page_template.h
-/// report.html as report/ builds it: a page that opens without a network, and a place in it for data.
+/// report.html as built from report/: a page that opens without a network, with a place for data.
 
 #include <filesystem>
 #include <span>
@@ -14,11 +14,11 @@
 namespace tribound::app
 {
 
-/// The comment in the template which the data replace.
+/// The comment in the template that is replaced by the data.
 inline constexpr std::string_view page_data_marker = "<!-- data of the page -->";
 
-/// JSON that can stand in a script element whatever the user's strings contain: every `<` becomes `\u003c`,
-/// so that none of them ends the element or starts a comment.
+/// JSON that is safe in a script element whatever the user's strings contain: every `<` becomes `\u003c`, so
+/// none of them ends the element or starts a comment.
 [[nodiscard]] std::string script_safe(std::string_view json);
 
 class PageTemplate
@@ -35,16 +35,16 @@ class PageTemplate
 
  private:
   std::string text_;
-  std::size_t marker_;  ///< its place in the text; npos where there is none
+  std::size_t marker_;  ///< its position in the text; npos if there is none
 };
 
-/// This computer, and the time; what could not be found out is empty or 0.
+/// This computer, and the time; unknown values are empty or 0.
 [[nodiscard]] io::Json machine_json();
 
-/// What is said of the components of the bound that a run has.
+/// Descriptions of the components of the bound that a run has.
 [[nodiscard]] io::Json components_json(const certify::RunKind& kind);
 
-/// Those of the files that are in the directory, in this order.
+/// The files that exist in the directory, in this order.
 [[nodiscard]] io::Json files_json(const std::filesystem::path& directory, std::span<const std::string> names);
 
 }  // namespace tribound::app

@@ -18,10 +18,10 @@ namespace tribound::app
 namespace
 {
 
-/// Characters up to which the page holds a table.
+/// Largest table on the page, in characters.
 constexpr std::size_t largest_table = 400'000;
 
-/// A table of which the page offers a copy; null where it is too large.
+/// A table that can be copied from the page; null where it is too large.
 io::Json table(std::string_view text)
 {
   io::Json packed = pack_text(text);
@@ -55,7 +55,7 @@ io::Json newton_json(const io::RunRecord& run)
   return steps;
 }
 
-/// Of all levels together.
+/// Over all levels.
 std::size_t n_triangles(std::span<const PageLevel> levels)
 {
   std::size_t n = 0;
@@ -63,7 +63,7 @@ std::size_t n_triangles(std::span<const PageLevel> levels)
   return n;
 }
 
-/// The files of a run, in the order in which a reader wants them.
+/// The files of a run, in the order of interest to a reader.
 std::vector<std::string> run_files(const io::RunRecord& run)
 {
   std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv",
@@ -78,11 +78,11 @@ std::vector<std::string> run_files(const io::RunRecord& run)
   return names;
 }
 
-/// The figures, by name; those older than the table that they are drawn from are of another study.
+/// The figures, by name; those older than the table they are drawn from belong to another study.
 std::vector<std::string> figure_names(const std::filesystem::path& directory)
 {
   std::vector<std::string> names;
-  std::error_code none;  // there need not be a table or a directory of figures
+  std::error_code none;  // a table or a directory of figures may not exist
   const auto drawn_after = std::filesystem::last_write_time(directory / "study.csv", none);
   for (const auto& entry : std::filesystem::directory_iterator(directory / "figures", none))
     if (entry.path().extension() == ".svg" && entry.last_write_time() >= drawn_after)
@@ -91,7 +91,7 @@ std::vector<std::string> figure_names(const std::filesystem::path& directory)
   return names;
 }
 
-/// In the order in which a reader wants them.
+/// The files of a study, in the order of interest to a reader.
 std::vector<std::string> study_files(const std::filesystem::path& directory, const Study& study)
 {
   std::vector<std::string> names = {"study.csv", "study.json"};

@@ -19,10 +19,10 @@ namespace tribound::app
 struct Study;      // of app/result/study.h
 struct PageLevel;  // of app/page/page_level.h
 
-/// The comment in the template, and in a page without them, which add_true_errors() replaces.
+/// The comment in the template, and in a page without true errors, that add_true_errors() replaces.
 inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
 
-/// What a study knows of the error on a level.
+/// The errors on a level known from a study.
 struct TrueErrors
 {
   int level = 0;
@@ -30,30 +30,31 @@ struct TrueErrors
   std::optional<double> dual_norm;     ///< of the residual, from below
 };
 
-/// Adds the true errors to a page that is written; does nothing where there is none. Throws WriteError when
-/// it cannot be written.
+/// Adds the true errors to an existing page; does nothing where there is none. Throws WriteError when it
+/// cannot be written.
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors);
 
 /// The page of a run: level by level.
 class ReportPage
 {
  public:
-  /// `page_template`: what report/ builds; where there is none nothing is collected or written.
+  /// `page_template`: built from report/; if it is missing, nothing is collected or written.
   explicit ReportPage(const std::filesystem::path& page_template);
   ~ReportPage();
   ReportPage(ReportPage&&) noexcept;
   ReportPage& operator=(ReportPage&&) noexcept;
 
-  /// A level that is not the last, in less detail than that; left out where it and those before it are more
-  /// than PageLimits::earlier.
+  /// A level that is not the last, in less detail; omitted where it and the previous ones exceed
+  /// PageLimits::earlier.
   template <int dim>
   void add(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
-  /// The last level, with the inside of the body; before write(). Takes the place of one with its number.
+  /// The last level, with the interior of the body; to be called before write(). Replaces a level with the
+  /// same number.
   template <int dim>
   void add_last(int number, const contact::NitscheForm<dim>& form, const adapt::CertifiedLevel<dim>& level);
 
-  /// Writes report.html into the directory, with links to those results that are there. Throws WriteError
-  /// when the file cannot be written.
+  /// Writes report.html into the directory, with links to the existing results. Throws WriteError when the
+  /// file cannot be written.
   void write(const std::filesystem::path& directory, const io::RunRecord& run) const;
 
  private:
@@ -61,9 +62,8 @@ class ReportPage
   std::vector<PageLevel> levels_;
 };
 
-/// Writes report.html of a study into the directory, with links to the tables, the figures and the pages of
-/// the variants that are there. Does nothing without a template. Throws WriteError when the file cannot be
-/// written.
+/// Writes report.html of a study into the directory, with links to the existing tables, figures and pages of
+/// the variants. Does nothing without a template. Throws WriteError when the file cannot be written.
 void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
                       const Study& study);
 

@@ -47,7 +47,7 @@ std::vector<std::string> cells_of(const std::string& line)
   return cells;
 }
 
-/// What stands in backquotes.
+/// The texts in backquotes.
 std::vector<std::string> quoted(const std::string& text)
 {
   std::vector<std::string> words;
@@ -58,7 +58,7 @@ std::vector<std::string> quoted(const std::string& text)
   return words;
 }
 
-/// "## [[contact]]" is about contact.
+/// The table named by a heading, as in "## [[contact]]".
 std::string table_of(const std::string& heading)
 {
   const std::size_t first = heading.find_first_not_of('[', heading.find('['));

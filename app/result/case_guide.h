@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file case_guide.h
-/// What docs/case-format.md says of tables and keys, for those who do not read it there.
+/// The descriptions of tables and keys in docs/case-format.md, for use elsewhere.
 
 #include <map>
 #include <string>
@@ -21,11 +21,11 @@ struct CaseGuide
 {
   std::map<std::string, std::string>
       tables;                            ///< the first sentence of each section, by the name of its table
-  std::map<std::string, KeyGuide> keys;  ///< by "table.key"; those of the case have no table
+  std::map<std::string, KeyGuide> keys;  ///< by "table.key"; top-level keys have no table
 };
 
-/// Reads the sections "## [name]" and in them the tables whose first column is "key", of the section, or
-/// "key of `name`", of a table in it. Links lose where they lead to.
+/// Reads the sections "## [name]". In them it reads the tables whose first column is "key", for the section,
+/// or "key of `name`", for a subtable. Links lose their targets.
 [[nodiscard]] CaseGuide read_case_guide(std::string_view markdown);
 
 }  // namespace tribound::app

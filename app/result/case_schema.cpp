@@ -38,7 +38,7 @@ void set_limits(const Interval& interval, bool is_integer, Json& schema)
   end(interval.upper, interval.includes_upper, "maximum", "exclusiveMaximum");
 }
 
-/// The schema of these keys for `false`: none of them may be given.
+/// A schema with `false` for these keys: none of them may be given.
 Json refused(const std::vector<std::string>& keys)
 {
   Json properties = Json::object();
@@ -46,7 +46,8 @@ Json refused(const std::vector<std::string>& keys)
   return properties;
 }
 
-/// What a key asks of the others, and keys that come together where the names of others are the user's.
+/// The relations of a key to others, and keys that must be given together where tables are also named by the
+/// user.
 Json dependencies(const Table& table)
 {
   Json all = Json::object();
@@ -64,8 +65,8 @@ Json dependencies(const Table& table)
   return all;
 }
 
-/// If the word of the choice is that of the group, its keys; else what holds for the groups behind it. Not by
-/// allOf: editors would no longer offer the keys beside it.
+/// If the choice names the group, its keys; else the same for the groups after it. Does not use allOf:
+/// editors would then no longer offer the other keys.
 Json choice(const Table& table, bool is_required, std::size_t first = 0)
 {
   const KeyGroup& group = table.groups[first];
@@ -84,20 +85,20 @@ Json choice(const Table& table, bool is_required, std::size_t first = 0)
   return schema;
 }
 
-/// The default, where the guide has it as it stands in a case: `0.01`, `2 000 000`, `"auto"`.
+/// The default, if the guide gives it as in a case: `0.01`, `2 000 000`, `"auto"`.
 Json literal(std::string text)
 {
   std::erase_if(text, [](char c) { return c == '`' || c == ' '; });
   return Json::parse(text, nullptr, false);
 }
 
-/// Makes the schema of the case and of all in it.
+/// Makes the schema of the case and everything in it.
 class Schema
 {
  public:
   explicit Schema(CaseGuide guide) : guide_(std::move(guide)) {}
 
-  /// What holds of an object, if it is one.
+  /// The requirements on an object, if the value is one.
   [[nodiscard]] Json table(const Table& table) const
   {
     Json schema = Json::object();
@@ -119,7 +120,7 @@ class Schema
   }
 
  private:
-  /// Any of the forms of the value, or of another one; each keyword speaks of one type. Words stand apart.
+  /// Any of the forms of the value, or of another one; each keyword applies to one type. Words are separate.
   [[nodiscard]] Json value(const Value& value, const Value* other = nullptr) const
   {
     Json schema = Json::object();
@@ -160,7 +161,7 @@ class Schema
     }
   }
 
-  /// The value of a key, described. Where tables have names of the user's, one may have that of the key.
+  /// The value of a key, described. Where users name tables, a table may have the name of the key.
   [[nodiscard]] Json property(const Table& table, const Key& key) const
   {
     Json schema = Json::object();
@@ -186,7 +187,7 @@ class Schema
     if (!words.empty()) schema["description"] = words;
   }
 
-  /// What the guide says of the table, or of those in it that the user names.
+  /// The guide's description of the table, or of its subtables named by the user.
   [[nodiscard]] std::string words_of(const Table& table) const
   {
     const auto section = guide_.tables.find(table.name);

@@ -8,9 +8,9 @@
 namespace tribound::app
 {
 
-/// case_file::case_table() as a JSON Schema of draft 7, which the editors of TOML know, described by
-/// docs/case-format.md. It accepts every valid case; what takes more than the case file to tell, such as
-/// names of a mesh, formulas and the dimension, is left to `tribound check`.
+/// case_file::case_table() as a JSON Schema of draft 7, which TOML editors support, with descriptions from
+/// docs/case-format.md. It accepts every valid case. Checks that need more than the case file, such as names
+/// of a mesh, formulas and the dimension, are left to `tribound check`.
 [[nodiscard]] std::string case_schema();
 
 }  // namespace tribound::app

@@ -25,7 +25,7 @@ std::string run_figure_script(const std::filesystem::path& script, const std::fi
   std::string argument = std::filesystem::absolute(directory).string();
   const std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
   pid_t child = 0;
-  // No shell, so that nothing in a name is taken for a command. The first line of the script names its
+  // No shell, so that no part of a name is interpreted as a command. The first line of the script names its
   // Python.
   if (const int error = ::posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
       error != 0)

@@ -44,7 +44,7 @@ std::vector<adapt::RatePoint> rate_points(std::span<const StudiedLevel> levels, 
   return points;
 }
 
-/// What study.csv, behind `variant`, and study.json say of a level.
+/// The data of a level in study.csv, after `variant`, and in study.json.
 io::TableRow columns(const StudyVariant& variant, std::size_t number, const certify::RunKind& kind)
 {
   const StudiedLevel& level = variant.levels[number];
@@ -131,7 +131,7 @@ io::Json newton_json(const Study& study)
   return table;
 }
 
-/// With the stopping criterion against without.
+/// Compares runs with and without the stopping criterion.
 io::Json differences(const Study& study)
 {
   io::Json object = io::Json::object();
@@ -226,7 +226,7 @@ std::vector<std::optional<double>> error_differences(const StudyVariant& with, c
 namespace
 {
 
-/// What is wrong on a level, as the end of a sentence; `of_reference`: the bound of the error of the
+/// What is violated on a level, as the end of a sentence; `of_reference`: the bound of the error of the
 /// reference.
 std::string violation(const StudiedLevel& level, const std::optional<double>& of_reference)
 {
@@ -236,7 +236,7 @@ std::string violation(const StudiedLevel& level, const std::optional<double>& of
         "{:.6f})",
         *bound_of(level), *level.dual_norm, *e);
   const auto bound = io::energy_bound(level.record);
-  // The triangle inequality: the reference is not the solution either.
+  // The triangle inequality: the reference is not exact either.
   if (of_reference && level.energy_effectivity() && *energy_error(level) > *bound + *of_reference)
     return fmt::format(
         "the bound {:.9g} of the error in the energy norm and that of the reference, {:.3g}, are together "

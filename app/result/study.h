@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file study.h
-/// What `tribound study` finds: a case solved in several variants and measured against a reference solution.
-/// Plain data in, study.csv, study.json and the tables on the screen out; what is not known is absent.
+/// The results of `tribound study`: a case solved in several variants and measured against a reference
+/// solution. Plain data in; study.csv, study.json and the tables on the screen out. What is unknown is
+/// absent.
 
 #include <array>
 #include <filesystem>
@@ -28,10 +29,10 @@ struct StudiedLevel
 
   /// bound / dual norm: at least 1.
   [[nodiscard]] std::optional<double> effectivity() const;
-  /// bound / ||sigma(u_ref - u_h)||, for comparison with other methods: no theorem says that it is at
-  /// least 1.
+  /// bound / ||sigma(u_ref - u_h)||, for comparison with other methods: it need not be at least 1.
   [[nodiscard]] std::optional<double> stress_effectivity() const;
-  /// Bound of the error in the energy norm / that against the reference, where both are of the same solution.
+  /// Bound of the error in the energy norm / error against the reference, where both refer to the same
+  /// solution.
   [[nodiscard]] std::optional<double> energy_effectivity() const;
 };
 
@@ -45,16 +46,16 @@ struct StudyVariant
 {
   std::string name;
   certify::RunStatus status = certify::RunStatus::uncertified;
-  std::string reason;  ///< why it is not certified; empty when it is
+  std::string reason;  ///< why it is not certified; empty if it is
   std::vector<StudiedLevel> levels;
 };
 
-/// The solution that stands for the exact one.
+/// The solution used in place of the exact one.
 struct StudyReference
 {
   int degree = 0;
   io::LevelRecord level;     ///< the mesh, the bound and the figures
-  double required = 0;       ///< what its relative bound should be at most
+  double required = 0;       ///< upper limit for its relative bound
   bool fine_enough = false;  ///< whether it is
   std::string reason;        ///< why it is not
 };
@@ -75,43 +76,43 @@ struct Study
 /// The variant of this name, or null.
 [[nodiscard]] const StudyVariant* find_variant(const Study& study, std::string_view name);
 
-/// Of which kind its runs are.
+/// The kind of its runs.
 [[nodiscard]] certify::RunKind run_kind(const Study& study);
 
-/// The exponents of energy error and bound in the degrees of freedom.
+/// The exponents of energy error and bound with respect to the degrees of freedom.
 struct Rates
 {
   std::optional<double> error;
   std::optional<double> bound;
 };
 
-/// From level `number` - 1 to it; nothing for level 0.
+/// From level `number` - 1 to level `number`; nothing for level 0.
 [[nodiscard]] Rates level_rates(const StudyVariant& variant, std::size_t number);
 /// Fitted over the last half of the levels, see fitted_rate().
 [[nodiscard]] Rates fitted_rates(const StudyVariant& variant);
 
-/// What stopping Newton's method early does to the energy error, for every level with the criterion:
-/// (its error - error without) / error without, at the same number of degrees of freedom, since the two runs
-/// may refine other cells (value_at). Nothing where the run without has no mesh of that size.
+/// The effect of stopping Newton's method early on the energy error, for every level with the criterion:
+/// (error with - error without) / error without, at the same number of degrees of freedom, since the two runs
+/// may refine different cells (value_at). Nothing where the run without has no mesh of that size.
 [[nodiscard]] std::vector<std::optional<double>> error_differences(const StudyVariant& with,
                                                                    const StudyVariant& without);
 
-/// What is wrong when an effectivity is below 1, or an error in the energy norm above the bound and that of
-/// the reference together, naming the level; empty when the guarantees hold.
+/// What is wrong if an effectivity is below 1, or an error in the energy norm exceeds the sum of the bound
+/// and that of the reference, naming the level; empty if the guarantees hold.
 [[nodiscard]] std::string violation(const Study& study);
 
 /// A row per variant and level; the columns are those of docs/output.md.
 [[nodiscard]] std::string study_csv(const Study& study);
 
-/// The same with the reference, the rates and the comparisons; unknown numbers are null. And its text.
+/// The same with the reference, the rates and the comparisons; unknown numbers are null. Then its text.
 [[nodiscard]] io::Json study_object(const Study& study);
 [[nodiscard]] std::string study_json(const Study& study);
 
 /// The tables of the variants, of Newton's steps, the rates and where the files are.
 [[nodiscard]] std::string study_text(const Study& study, const std::string& directory);
 
-/// Runs `script` with the directory of a study as its argument and waits for it. Returns what went wrong;
-/// empty when it succeeded.
+/// Runs `script` with the directory of a study as its argument and waits for it. Returns the error; empty on
+/// success.
 [[nodiscard]] std::string run_figure_script(const std::filesystem::path& script,
                                             const std::filesystem::path& directory);
 

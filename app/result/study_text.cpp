@@ -116,7 +116,7 @@ std::string bounded_text(const Study& study, std::optional<double> (StudiedLevel
                      known.size(), error, smallest, largest);
 }
 
-/// On how many levels the intervals of the quantities could be compared; empty for none.
+/// The number of levels on which the intervals of the quantities could be compared; empty for none.
 std::string intervals_text(const Study& study)
 {
   long n = 0;

@@ -22,13 +22,13 @@ using Figures = std::vector<std::pair<std::string, std::optional<double>>>;
 
 constexpr const char* sweep_schema = "1";
 
-/// No object where the file is missing or not whole.
+/// Not an object where the file is missing or incomplete.
 io::Json read_json(const std::filesystem::path& file)
 {
   return io::Json::parse(io::read_text(file), nullptr, false);
 }
 
-/// The value there, such as "/contact/normal", if it is of this kind.
+/// The value at a path such as "/contact/normal", if it is of this type.
 std::optional<double> number_at(const io::Json& json, const std::string& path)
 {
   const io::Json::json_pointer place(path);
@@ -53,7 +53,7 @@ void add_contact(const io::Json& certificate, Figures& figures)
       figures.emplace_back("sliding_factor." + name, factor);
 }
 
-/// The largest pressure, and the measure of what is open: sums over contact.csv.
+/// The largest pressure, and the measure of the open part, from contact.csv.
 void add_contact_line(const std::filesystem::path& file, Figures& figures)
 {
   const auto rows = case_file::parse_csv(io::read_text(file), file.string());
@@ -90,8 +90,8 @@ io::Json certificate_of(const std::filesystem::path& directory, const SweepRun& 
   return text_at(certificate, "/case/sha256") == run.sha256 ? certificate : io::Json(nullptr);
 }
 
-/// Whether a run that ended with this exit code has left the certificate at its end. After a crash or on a
-/// full disk it is that of an earlier level.
+/// Whether a run with this exit code wrote the certificate at its end. After a crash or on a full disk it is
+/// that of an earlier level.
 bool is_final(const io::Json& certificate, int exit_code)
 {
   const std::string status = text_at(certificate, "/status");
@@ -105,7 +105,7 @@ std::string status_without_certificate(const SweepRun& run)
   return *run.exit_code > 128 ? "crashed" : "failed";
 }
 
-/// Every figure that some run has, in the order of the first that has it.
+/// Every figure of any run, in the order of the first run that has it.
 std::vector<std::string> figure_names(const SweepRecord& sweep)
 {
   std::vector<std::string> names;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file sweep.h
-/// What `tribound sweep` leaves: sweep.csv and sweep.json, a row for each run, from the certificates of the
-/// runs.
+/// The results of `tribound sweep`: sweep.csv and sweep.json, a row for each run, from the certificates of
+/// the runs.
 
 #include <filesystem>
 #include <map>
@@ -14,7 +14,7 @@
 namespace tribound::app
 {
 
-/// One run of a sweep. Numbers that are not known are absent.
+/// One run of a sweep. Unknown numbers are absent.
 struct SweepRun
 {
   std::string name;                 ///< of its directory: "0001"
@@ -26,8 +26,7 @@ struct SweepRun
   std::string reason;
   /// In the order in which they were found: relative, bound, cells, dofs, ...; see docs/output.md.
   std::vector<std::pair<std::string, std::optional<double>>> figures;
-  std::string
-      units{};  ///< `units` of its certificate, JSON; empty: the case names none, or they are not known
+  std::string units{};  ///< `units` of its certificate, JSON; empty: the case names none, or they are unknown
 };
 
 struct SweepRecord
@@ -38,16 +37,16 @@ struct SweepRecord
   std::vector<SweepRun> runs;
 };
 
-/// Status, reason and figures of a run that has ended, from certificate.json and contact.csv in its
-/// directory; figures only where the certificate is that of its end.
+/// Reads status, reason and figures of a run that has ended, from certificate.json and contact.csv in its
+/// directory; figures only where the certificate is the final one.
 void read_results(const std::filesystem::path& directory, SweepRun& run);
 
-/// The runs of an earlier sweep in this directory, as its sweep.json has them, that are complete and solved
-/// the same effective case on the same mesh file; with their exit codes.
+/// The complete runs of an earlier sweep in this directory, according to its sweep.json, that solved the same
+/// effective case on the same mesh file; with their exit codes.
 [[nodiscard]] std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
                                                        const SweepRecord& sweep);
 
-/// A row per run: name, the keys, status, reason, then every figure that some run has.
+/// A row per run: name, the keys, status, reason, then every figure of any run.
 [[nodiscard]] std::string sweep_csv(const SweepRecord& sweep);
 [[nodiscard]] std::string sweep_json(const SweepRecord& sweep);
 

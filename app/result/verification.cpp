@@ -19,7 +19,7 @@ namespace
 
 constexpr const char* verification_schema = "1";
 
-/// Whether it is the first of a load step.
+/// Whether it is the first iterate of a load step.
 bool begins_load_step(const std::vector<VerifiedIterate>& iterates, std::size_t i)
 {
   return iterates[i].load_step > 0 && (i == 0 || iterates[i - 1].load_step != iterates[i].load_step);
@@ -127,7 +127,7 @@ std::string VerifiedIterate::refusal() const
 namespace
 {
 
-/// Of the last iterate, or the last one of a load step.
+/// For the last iterate, or the last one of a load step.
 std::string refusal_of_a_solution(const Verification& v)
 {
   for (std::size_t i = 0; i < v.iterates.size(); ++i)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file verification.h
-/// What `tribound verify` reports: the bound beside what it bounds. Plain data in, text out.
+/// The report of `tribound verify`: the bound next to the quantity it bounds. Plain data in, text out.
 
 #include <algorithm>
 #include <filesystem>
@@ -26,11 +26,11 @@ struct VerifiedQuantity
 {
   certify::QuantityInterval interval{};               ///< with the value of the iterate
   std::optional<certify::QuantityInterval> richer{};  ///< of the richer solution, with its value
-  /// Whether the interval is one of the number: it and that of the richer solution have a point in common.
+  /// Whether the interval contains the exact value: it must intersect that of the richer solution.
   certify::IntervalComparison comparison{};
 
-  /// Where in the interval the value of the richer solution lies, 0: at the lower end, 1: at the upper;
-  /// nothing without both and where the ends differ by rounding.
+  /// The position in the interval of the richer solution's value, 0: at the lower end, 1: at the upper.
+  /// Nothing unless both exist, or if the ends differ only by rounding.
   [[nodiscard]] std::optional<double> position() const;
 };
 
@@ -38,17 +38,17 @@ struct VerifiedQuantity
 [[nodiscard]] std::vector<VerifiedQuantity> verified_quantities(
     const certify::EnergyBound& bound, const std::optional<certify::EnergyBound>& richer);
 
-/// Whether the interval holds the number: nothing where that is not for certain, or for any of several.
+/// Whether the intervals contain their values; nothing where this is certain for none of them.
 [[nodiscard]] std::optional<bool> hold(const std::vector<VerifiedQuantity>& quantities);
 
-/// What is wrong where an interval does not hold its number, as the end of a sentence; empty: nothing.
+/// What is wrong where an interval does not contain its value, as the end of a sentence; empty: nothing.
 [[nodiscard]] std::string violation(const std::vector<VerifiedQuantity>& quantities);
 
 /// A line for each.
 [[nodiscard]] std::string quantities_text(const std::vector<VerifiedQuantity>& quantities,
                                           const io::CaseFacts& facts);
 
-/// The fields of docs/output.md; what is not known is null.
+/// The fields of docs/output.md; unknown values are null.
 [[nodiscard]] io::Json quantities_json(const std::vector<VerifiedQuantity>& quantities);
 
 /// One Newton iterate: its bound and the dual norm of its residual from below, stress units times
@@ -63,7 +63,7 @@ struct VerifiedIterate
   double identities = 0;       ///< the largest defect, relative to the stress, or to the largest of a path
   int load_step = 0;           ///< from 1, or 0: there are none
   double t = 0;                ///< of the load step
-  double path_sigma = 0;       ///< the largest ||sigma|| of the path up to it: what rounding is relative to
+  double path_sigma = 0;       ///< the largest ||sigma|| of the path so far: the reference for rounding
   std::optional<certify::EnergyBound> energy{};  ///< with the intervals of the quantities, if there are any
 
   [[nodiscard]] std::optional<double> effectivity() const
@@ -72,11 +72,11 @@ struct VerifiedIterate
     size.sigma = std::max(size.sigma, path_sigma);
     return tribound::certify::effectivity(bound, dual_norm, size);
   }
-  /// Whether an identity is violated and not by rounding alone, so that `bound` need not be one.
+  /// Whether an identity is violated beyond rounding, so that `bound` may not be one.
   [[nodiscard]] std::string refusal() const;
 };
 
-/// A space in which the truth was looked for.
+/// A space in which a more accurate solution was computed.
 struct RicherSpaceFacts
 {
   int degree = 0;
@@ -93,23 +93,23 @@ struct Verification
   std::vector<VerifiedIterate> iterates;  ///< k = 1, 2, ..., load step by load step; the last is the solution
   bool converged = false;
   int richer_degree = 0;
-  /// What the solution was measured against, if it is one and there are no load steps.
+  /// The solution compared with, if there is one and there are no load steps.
   std::optional<certify::RicherSolution> richer;
-  std::optional<certify::EnergyBound> energy;         ///< of the same solution, where it is asked for
+  std::optional<certify::EnergyBound> energy;         ///< of the same solution, where requested
   std::optional<certify::EnergyBound> richer_energy;  ///< of the richer one, for the intervals of quantities
   std::vector<std::pair<std::string, double>> times;  ///< s per stage
 
-  /// Bound of the error in the energy norm / that against the richer solution, where both are of the same
-  /// solution and more than rounding.
+  /// Bound of the error in the energy norm / error against the richer solution, where both refer to the same
+  /// solution and exceed rounding.
   [[nodiscard]] std::optional<double> energy_effectivity() const;
-  /// Those of an iterate.
+  /// The quantities of an iterate.
   [[nodiscard]] std::vector<VerifiedQuantity> quantities(const VerifiedIterate& iterate) const;
 };
 
-/// What is wrong when an effectivity is below 1 although the identities hold, naming the iterate; then when
-/// the richer solution is farther in the energy norm than the bound allows; then when the interval of a
-/// quantity has no point in common with that of the richer solution; then when identities do not hold for the
-/// last iterate of a load step, which `tribound run` would not certify; empty when the guarantee holds.
+/// What is wrong, in this order: an effectivity is below 1 although the identities hold (naming the iterate);
+/// the richer solution is farther away in the energy norm than the bound allows; the interval of a quantity
+/// does not intersect that of the richer solution; identities do not hold for the last iterate of a load
+/// step, which `tribound run` would not certify. Empty when the guarantee holds.
 [[nodiscard]] std::string violation(const Verification& verification);
 
 /// The table of the iterates, the errors and where the file is.

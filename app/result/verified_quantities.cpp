@@ -19,7 +19,7 @@ std::string ends(const certify::QuantityInterval& interval)
   return fmt::format("[{:.9g}, {:.9g}]", interval.lower, interval.upper);
 }
 
-/// What comparison with the richer solution has shown, in words.
+/// The outcome of the comparison with the richer solution, in words.
 std::string words_of_comparison(const VerifiedQuantity& quantity)
 {
   if (!quantity.comparison.agree) return "not compared: " + quantity.comparison.reason;

@@ -18,7 +18,7 @@ namespace
 
 constexpr double load = 0.1 * 2 - 0.06 * 1;  // pressed down on the top, lifted on the right side
 
-/// The data: what the block is made of and what holds on its sides, by the names that the mesh gives them.
+/// The data: the material of the block and the conditions on its sides, by their names in the mesh.
 problem::Problem<2> block(const mesh::Mesh<2>& mesh)
 {
   return problem::Problem<2>(
@@ -51,7 +51,7 @@ bool certify_on_one_mesh(const adapt::Method& method, const mesh::Mesh<2>& mesh,
   const solve::NewtonResult<2> newton = solve::solve<2>(form, {}, method.newton, method.solver);
   if (newton.status != solve::NewtonStatus::converged) return false;
 
-  // The equilibrated stress, the identities that make it one, and the bound.
+  // The equilibrated stress, the identities that it must satisfy, and the bound.
   const certify::Stress<2> stress = certify::equilibrate<2>(form, newton.u, newton.traction);
   const certify::IdentityDefects identities = certify::check_identities<2>(form, newton.traction, stress);
   const certify::Estimate eta = certify::estimate(form, newton.u, stress);
@@ -64,7 +64,7 @@ bool certify_on_one_mesh(const adapt::Method& method, const mesh::Mesh<2>& mesh,
   return verdict.status != certify::RunStatus::not_certified && std::abs(lift(form, newton.u) - load) < 1e-8;
 }
 
-/// Refines where the bound asks for it, until it is below the tolerance.
+/// Refines according to the bound until it is below the tolerance.
 bool adapt_until_certified(const adapt::Method& method, mesh::Mesh<2> mesh,
                            const problem::Problem<2>& problem)
 {

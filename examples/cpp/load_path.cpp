@@ -14,7 +14,7 @@ using namespace tribound;
 namespace
 {
 
-/// Formulas may name t, the load factor.
+/// Formulas may contain t, the load factor.
 problem::Problem<2> pushed_block(const mesh::Mesh<2>& mesh)
 {
   const problem::Joint bond{.tension = {.strength = 0.05, .fracture_energy = 5e-4},
@@ -31,7 +31,7 @@ problem::Problem<2> pushed_block(const mesh::Mesh<2>& mesh)
 /// Integrals over the base of a committed step.
 struct Base
 {
-  double damage = 0;  ///< of all of it
+  double damage = 0;  ///< over all of it
   double dissipated = 0;
   double force = 0;  ///< along it
 

@@ -1,7 +1,7 @@
 /// @file own_loop.cpp
-/// A program that takes the adaptive loop into its own hands: a load given by a function of the program, a
-/// marking that adds the cells in which the contact opens or begins to slip, and a stopping rule of its own,
-/// the friction force on the floor. Exit code 0 if the bound of the last level is valid and the rule was met.
+/// A program that runs the adaptive loop itself: a load given by a function of the program, a marking that
+/// adds the cells in which the contact opens or begins to slip, and its own stopping rule, the friction force
+/// on the floor. Exit code 0 if the bound of the last level is valid and the rule was met.
 
 #include <tribound/tribound.h>
 #include <algorithm>
@@ -18,8 +18,8 @@ using namespace tribound;
 namespace
 {
 
-/// A load on the top that is largest in the middle, q(x) = factor x (2 - x). Of a polynomial the degree is
-/// all that the bound needs to know.
+/// A load on the top that is largest in the middle, q(x) = factor x (2 - x). For a polynomial, the bound only
+/// needs its degree.
 problem::Field load(double factor)
 {
   return problem::Field(
@@ -32,7 +32,7 @@ problem::Field load(double factor)
                              .degree = 2});
 }
 
-/// Cells of which the contact has more than one status: there it opens, or begins to slip.
+/// Cells whose contact has more than one status: there it opens, or begins to slip.
 std::vector<Index> cells_of_change(const contact::NitscheForm<2>& form, std::span<const double> u)
 {
   std::vector<Index> cells;
@@ -70,7 +70,7 @@ double friction_force(const adapt::LevelView<2>& view)
 bool friction_settles(const problem::Problem<2>& problem, mesh::Mesh<2> mesh)
 {
   const adapt::Method method{.degree = 2};
-  constexpr double tolerance = 1e-6;  // out of reach: what ends the loop is the rule below
+  constexpr double tolerance = 1e-6;  // never reached: the rule below ends the loop
   adapt::Levels<2> levels(problem, method, tolerance,
                           std::make_unique<adapt::Discretisation<2>>(std::move(mesh), problem, method));
   adapt::Strategy<2> strategy = adapt::make_strategy<2>({.max_dofs = 200'000});

@@ -1,10 +1,10 @@
 #pragma once
 
 /// @file tribound.h
-/// All of Tribound that programs use, in the order of the method. What is not here, nor included from here,
-/// are the parts of these parts.
+/// The public interface of Tribound, in the order of the method. Headers that are not included from here are
+/// internal.
 
-// The problem: what the case file says, and what holds where.
+// The problem: the data of the case file, and the conditions on each part.
 #include "tribound/base/apart.h"
 #include "tribound/base/error.h"
 #include "tribound/base/types.h"
@@ -73,7 +73,7 @@
 #include "tribound/algebra/petsc.h"
 #include "tribound/solve/newton.h"
 
-// The equilibrated stress, its identities, the components of the bound, and what may be claimed.
+// The equilibrated stress, its identities, the components of the bound, and the resulting verdict.
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/components.h"
@@ -90,15 +90,15 @@
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/certify/equilibrate/too_flat.h"
 
-// What deserves a look before and after.
+// Checks before and after a solution.
 #include "tribound/doctor/diagnosis.h"
 #include "tribound/doctor/solution_facts.h"
 
-// What the bound is compared with.
+// References for the bound.
 #include "tribound/certify/truth/solution_error.h"
 #include "tribound/certify/truth/true_error.h"
 
-// The adaptive loop: a level of it, where to refine, the whole.
+// The adaptive loop: a level, the marking, the whole loop.
 #include "tribound/adapt/contact_functions.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/excerpt.h"
