@@ -1,5 +1,5 @@
-# Gmsh's library, which has neither a pkg-config nor a config file on Debian. Defines Gmsh::Gmsh for what is linked with it,
-# and GMSH_SONAME, by which the library of Tribound loads it when it is needed (mesh/gmsh_library.h).
+# Gmsh's library, which has neither a pkg-config nor a config file on Debian. Defines Gmsh::Gmsh for targets that link it, and
+# GMSH_SONAME, by which Tribound's library loads it when needed (mesh/gmsh_library.h).
 
 find_path(GMSH_INCLUDE_DIR gmshc.h)
 find_library(GMSH_LIBRARY gmsh)

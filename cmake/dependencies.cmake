@@ -1,8 +1,8 @@
-# Everything Tribound stands on; scripts/setup installs it on Debian.
+# All dependencies of Tribound; scripts/setup installs them on Debian.
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # Without these two ccache gives up on files that use a precompiled header.
+  # Without these two, ccache does not cache files that use a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
@@ -12,7 +12,7 @@ pkg_search_module(MPI REQUIRED IMPORTED_TARGET mpi-c ompi-c mpich)
 pkg_search_module(PETSC REQUIRED IMPORTED_TARGET PETSc petsc)
 pkg_check_modules(LAPACK REQUIRED IMPORTED_TARGET lapack blas)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
-pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi hdf5-mpi) # with MPI, as PETSc has it
+pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi hdf5-mpi) # with MPI, as in PETSc
 pkg_check_modules(EIGEN REQUIRED IMPORTED_TARGET eigen3>=3.4)
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}) # FindGmsh.cmake
 find_package(Gmsh REQUIRED)

@@ -7,7 +7,7 @@ set_target_properties(tribound PROPERTIES VERSION ${PROJECT_VERSION}
                                           SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 install(TARGETS tribound EXPORT tribound)
 if(TARGET tribound_app)
-  # Only a shared library needs it: the installed tree may be moved.
+  # Only a shared library needs this: the installed tree may be moved.
   set_target_properties(tribound_app PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
   install(TARGETS tribound_app)
   configure_file(${PROJECT_SOURCE_DIR}/docs/man/tribound.1.in ${PROJECT_BINARY_DIR}/tribound.1 @ONLY)
@@ -18,7 +18,7 @@ if(TARGET tribound_app)
   install(FILES ${PROJECT_SOURCE_DIR}/app/completions/_tribound DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 endif()
 
-# What the program runs (app/result/figures.cpp), and the script of pictures.
+# Files that the program runs (app/result/figures.cpp), and the script of pictures.
 install(PROGRAMS ${PROJECT_SOURCE_DIR}/scripts/study_figures ${PROJECT_SOURCE_DIR}/scripts/picture
         DESTINATION ${CMAKE_INSTALL_DATADIR}/tribound)
 foreach(module raster result_charts result_files result_picture result_surface study_bodies study_charts study_fields)
@@ -37,7 +37,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tribound-config-version.c
 install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/tribound-config-version.cmake
         DESTINATION ${package_dir})
 
-# The guide, the examples and whatever else it refers to, beside each other as in the sources.
+# The guide, the examples and everything else it refers to, arranged as in the sources.
 install(FILES CHANGELOG.md CITATION.cff CONTRIBUTING.md COPYING LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES src/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src)
 install(FILES bench/README.md bench/block3d.toml DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)

@@ -1,9 +1,9 @@
-# The Debian package, by scripts/package. What the program and the library are linked with is found by dpkg-shlibdeps.
+# The Debian package, by scripts/package. dpkg-shlibdeps finds the linked libraries of the program and the library.
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME tribound)
 set(CPACK_PACKAGE_CONTACT "The Tribound authors <authors@tribound.invalid>") # they have no address
-if(DEFINED ENV{DEBEMAIL}) # of who builds the package, as Debian's own tools have it
+if(DEFINED ENV{DEBEMAIL}) # the builder of the package, as in Debian's own tools
   set(CPACK_PACKAGE_CONTACT "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 endif()
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "certified frictional contact of elastic bodies")
@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-# Gmsh's library is loaded by its soname, after which Debian names packages; the reasons for the others: docs/decisions.md.
+# Gmsh's library is loaded by its soname, from which Debian derives the package name; for the others see docs/decisions.md.
 string(REPLACE ".so." "" gmsh_package ${GMSH_SONAME})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS ${gmsh_package})
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libopenblas0-pthread, openmpi-bin, libeigen3-dev")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-FINER = 3  # pixels are drawn so many times finer in both directions, and averaged
-DISTANCE = 3.5  # of the viewer, in sizes of what is drawn
+FINER = 3  # pixels are drawn this many times finer in both directions, and averaged
+DISTANCE = 3.5  # of the viewer, in sizes of the drawn object
 DARKEST = 0.62  # shade of a face seen edge-on
 
 

@@ -9,7 +9,7 @@ from result_surface import surface
 from study_bodies import ZONE_COLOUR, shade_zones
 from study_fields import BLUE, GREEN, ORANGE, PURPLE, RED, STATUS_NAME
 
-SHOWN = 0.99  # of the values are below the end of a scale: those at singular points would flatten the rest
+SHOWN = 0.99  # fraction of the values within a scale: those at singular points would flatten the rest
 
 
 def along(contact):
@@ -105,7 +105,7 @@ class ContactPlan:
         figure.colorbar(colours, ax=axes, shrink=0.85, extend="max", label=run.labelled("contact pressure", "stress"))
 
 
-# Columns of history.csv in words, and the kinds of number they are: what their unit is looked up by.
+# Columns of history.csv in words, and the kind of each number, by which its unit is found.
 FORCES = {"contact_normal": ("contact force, normal", "force"), "contact_tangential": ("contact force, tangential", "force")}
 
 

@@ -21,12 +21,12 @@ from result_files import displacement_scale, read_grid, read_table, weighted_qua
 from result_surface import surface
 
 WIDTH, HEIGHTS, DOTS = 10, (3.4, 4.6), 120  # inches; pixels of an inch
-BAR = 1.1  # inches, what labels and colour bars take of the width
+BAR = 1.1  # inches, width of labels and colour bars
 CHART, LONG = 1.45, 4  # width over height: of charts, of bodies that take all of a row
 SOLID = 600  # pixels, the width at which bodies in 3D are drawn
 HIGHEST = "highest"
-UNIFORM = 1e-6  # relative: below, a stress is the same everywhere
-MANY_CELLS = 2500  # from which on facets need not be cut as finely
+UNIFORM = 1e-6  # relative: below this, a stress is uniform
+MANY_CELLS = 2500  # from here on facets need not be cut as finely
 VIEW = (0.6, -1.0, 0.55)  # 3D: sideways, in front and above, where the viewer is
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 # Corners of the facets of a cell, counterclockwise from outside; in 2D the cell itself.
 FACETS = {2: np.array([[0, 1, 2]]), 3: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}
-SHARP = np.cos(np.radians(30))  # facets that meet at a larger angle have an edge of the body between them
+SHARP = np.cos(np.radians(30))  # facets that meet at a larger angle form an edge of the body
 SAME_PLACE = 1e-9  # of the body
 
 
@@ -75,7 +75,7 @@ def sharp_edges(grid, cells, facets):
     edge = edge.ravel()
     total = np.zeros((len(count), 3))
     np.add.at(total, edge, np.repeat(normals, 3, axis=0))
-    # Of two unit normals at the angle a the sum has the length 2 cos(a/2).
+    # The sum of two unit normals at angle a has length 2 cos(a/2).
     sharp = (count != 2) | (np.linalg.norm(total, axis=1) < 2 * np.sqrt((1 + SHARP) / 2))
     return sharp[edge]
 

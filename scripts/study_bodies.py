@@ -10,7 +10,7 @@ from result_files import OPEN, SLIP, STICK, TIED, displacement_scale, friction, 
 from study_charts import legend_below, scientific
 from study_fields import BLUE, GREEN, PURPLE, RED
 
-MOST_MAP_CELLS = 1500  # of a map whose cells can still be told apart
+MOST_MAP_CELLS = 1500  # of a map whose cells can still be distinguished
 ZONE_COLOUR = {OPEN: "#E9ECEF", STICK: "#DCEBF7", SLIP: "#FBE7D9", TIED: "#D9F0E7"}
 
 

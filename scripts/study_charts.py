@@ -116,7 +116,7 @@ def energy_errors(axes, study):
 
 def convergence(study):
     panels = [bounds]
-    if np.isfinite(study.table["energy_error"]).any():  # not in a study that ended before its reference
+    if np.isfinite(study.table["energy_error"]).any():  # missing in a study that ended before its reference
         panels.append(energy_errors)
     figure, axes = plt.subplots(1, len(panels), figsize=(4.3 * len(panels), 3.7), squeeze=False, layout="constrained")
     for draw, panel in zip(panels, axes[0]):

@@ -9,9 +9,9 @@ from matplotlib.path import Path
 from result_files import OPEN, SLIP, STICK, TIED
 from result_surface import FACETS, outer_facets
 
-MOST_VECTOR_CELLS = 3000  # above, a mesh goes into the SVG as an image
+MOST_VECTOR_CELLS = 3000  # above this, a mesh goes into the SVG as an image
 
-# Okabe and Ito's colours, which colour-blind people can tell apart.
+# Okabe and Ito's colours, distinguishable for colour-blind people.
 BLUE, ORANGE, GREEN, RED, SKY, PURPLE, GREY = (
     "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9", "#CC79A7", "#999999",
 )
@@ -27,7 +27,7 @@ class View:
         if dimension == 2:
             self.axes = np.eye(3)
             return
-        # An axis not along the normal is turned towards the viewer, and so is the normal, a little.
+        # An axis not along the normal is turned slightly towards the viewer, and so is the normal.
         normal = np.array([0.0, -1.0, 0.0]) if contact_normal is None else contact_normal
         normal = normal / np.linalg.norm(normal)
         side = np.eye(3)[np.argmin(np.abs(normal) + [0, 0, 1e-9])]

@@ -20,9 +20,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-NOT_COMPARED = re.compile("seconds|deviation")  # in the head of a column
+NOT_COMPARED = re.compile("seconds|deviation")  # in the header of a column
 TIME_LIMIT = 1800  # seconds, of one run
-ROUNDING = 1e-12  # numbers below are not compared
+ROUNDING = 1e-12  # smaller numbers are not compared
 VERDICTS = (0, 3)  # exit codes with a valid bound
 
 

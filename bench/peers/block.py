@@ -52,7 +52,7 @@ def elasticity(mf, mim, gamma, friction):
 
 def solve(model, mim):
     """Newton steps of the contact problem; mim: rule of the contact integrals."""
-    # The first step: closed and sticking. Newton's method from u = 0 would take twice as many.
+    # The first step: closed and sticking. Newton's method from u = 0 would need twice as many steps.
     glued = model.add_linear_term(mim, "-P.Test_u", BOTTOM)
     model.solve("lsolver", "mumps")
     model.disable_bricks(glued)
@@ -68,8 +68,8 @@ def main(n, friction):
     mesh = block(n)
     full = gf.MeshFem(mesh, 2)
     full.set_classical_fem(2)
-    # Without the nodes on the left, where u = 0: eliminated by the model, each would clear a vector of all unknowns, at every
-    # assembly.
+    # Without the nodes on the left, where u = 0: if the model eliminated them, each would clear a vector of all unknowns in
+    # every assembly.
     mf = gf.MeshFem("partial", full, np.setdiff1d(np.arange(full.nbdof()), full.basic_dof_on_region(LEFT)))
     mim, mim_contact = gf.MeshIm(mesh, 2), gf.MeshIm(mesh, 9)
     model = elasticity(mf, mim, 10 * n, friction)

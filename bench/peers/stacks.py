@@ -80,7 +80,7 @@ def add_interface(model, k, bodies, meshes, degree, pair):
     mim = gf.MeshIm(mesh, gf.Integ(f"IM_GAUSS1D({2 * degree + 5})"))
     for side, body in (("s", k), ("m", k + 1)):
         model.add_interpolate_transformation_from_expression(f"{side}{k}", mesh, meshes[body], "X")
-    # Weights by the stiffness of the sides, and n = (0, -1)
+    # Weights by the stiffness of the sides, and n = (0, -1).
     stiff = [(lam + 2 * mu) * body["cells"][0] / (body["x"][1] - body["x"][0])
              for body, (lam, mu) in ((body, lame(body)) for body in (upper, lower))]
     gamma = 10 * stiff[0] * stiff[1] / sum(stiff)
@@ -107,7 +107,7 @@ def solve(bodies, pairs, degree):
     model = gf.Model("real")
     meshes, rules = zip(*(add_body(model, k, body, degree) for k, body in enumerate(bodies)))
     interfaces = [add_interface(model, k, bodies, meshes, degree, pair) for k, pair in enumerate(pairs)]
-    # The first step: closed and sticking. (Of a linear term a part that is constant would stay.)
+    # The first step: closed and sticking. (The constant part of a linear term would remain.)
     glued = [model.add_nonlinear_term(mim, tested(k, P)) for k, (mim, P, _) in enumerate(interfaces)]
     model.solve("lsolver", "mumps")
     for brick in glued:

@@ -1,4 +1,4 @@
-# What Debian wants of the files of a package (Debian Policy, chapter 12); run by CPack on the files before they are packed.
+# Debian's requirements on the files of a package (Debian Policy, chapter 12); run by CPack on the files before packing.
 set(share ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share)
 set(doc ${share}/doc/tribound)
 

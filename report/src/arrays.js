@@ -13,7 +13,7 @@ export async function inflate(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** The integers of which the bytes lie side by side, the lowest first. */
+/** The integers whose bytes are stored plane by plane, the lowest first. */
 function joinBytes(bytes, count, width) {
   const codes = new Uint32Array(count);
   for (let byte = 0; byte < width; ++byte)
@@ -33,7 +33,7 @@ export async function unpack({ count, width, data, stride, offset, step, log }) 
   const codes = joinBytes(await inflate(bytesOf(data)), count, width);
   fromDifferences(codes, stride);
   if (step === undefined) return codes;
-  const values = new Float64Array(count); // by loops: from() with a function takes five times as long
+  const values = new Float64Array(count); // by loops: from() with a function is five times slower
   if (log) for (let i = 0; i < count; ++i) values[i] = codes[i] === 0 ? 0 : 10 ** (offset + step * (codes[i] - 1));
   else
     for (let i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ export async function unpackText({ text }) {
   return new TextDecoder().decode(await inflate(bytesOf(text)));
 }
 
-/** The same object with every packed array in it, at any depth, unpacked. */
+/** The same object with every packed array in it unpacked, at any depth. */
 export async function unpackAll(value) {
   if (Array.isArray(value)) return Promise.all(value.map(unpackAll));
   if (value === null || typeof value !== "object") return value;

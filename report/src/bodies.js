@@ -1,9 +1,9 @@
-// Bodies that touch each other: which way they are drawn apart, and which are shown.
+// Bodies in contact: how they are drawn apart, and which are shown.
 
 import { element } from "./dom.js";
 
 const turning = 0.05; // mean normals shorter than this belong to surfaces that close around a body
-const distance = 0.3; // of the diagonal, between two bodies that are drawn apart entirely
+const distance = 0.3; // of the diagonal, between two bodies that are fully drawn apart
 
 /** Low and high corner of each body. */
 function bodyBoxes({ points, dimension, vertexBody, nBodies }) {
@@ -19,7 +19,7 @@ function bodyBoxes({ points, dimension, vertexBody, nBodies }) {
   return boxes;
 }
 
-/** From slave to master: along the normal, or where that turns around one of them out of it along the axis. */
+/** From slave to master: along the normal, or along the axis where one body surrounds the other. */
 function separation({ bodies: [slave, master], normal, axis }, boxes, length, diagonal) {
   const size = Math.hypot(...normal);
   if (size > turning) return normal.map((x) => (x / size) * length);
@@ -28,7 +28,7 @@ function separation({ bodies: [slave, master], normal, axis }, boxes, length, di
   return axis.map((x) => x * free);
 }
 
-/** Solves (L + small) x = b for the graph of the interfaces, by elimination: as many unknowns as bodies. */
+/** Solves (L + small) x = b for the graph of the interfaces, by elimination: one unknown per body. */
 function balance(nBodies, pairs, right) {
   const rows = Array.from({ length: nBodies }, (_, i) => Array.from({ length: nBodies }, (__, j) => (i === j ? 1e-9 : 0)));
   for (const [a, b] of pairs) {
@@ -46,7 +46,7 @@ function balance(nBodies, pairs, right) {
   return x.map((row, i) => row.map((value) => value / rows[i][i]));
 }
 
-/** How far each body moves when they are drawn apart entirely: at all interfaces as nearly as can be by what separates them. */
+/** How far each body moves when fully drawn apart: the displacement jump at each interface is as close as possible to its separation. */
 export function explosion(surface) {
   const { interfaces, nBodies, dimension, box } = surface;
   const boxes = bodyBoxes(surface);
@@ -96,7 +96,7 @@ export class Bodies {
       : (this.current?.offsets[i] ?? [0, 0, 0]).map((x) => amount * x)));
   }
 
-  /** Middle, about the centre of the assembly, and size of what is shown. */
+  /** Middle, about the centre of the assembly, and size of the visible bodies. */
   extent({ box }, amount) {
     const layout = this.current ? this.layout(amount) : [];
     if (!layout.some((shift) => shift)) return { middle: [0, 0, 0], size: box.size };

@@ -20,7 +20,7 @@ export class Camera {
     this.reset(1);
   }
 
-  /** The origin in the middle, `scale` above and below it. */
+  /** Puts the origin in the middle, with `scale` above and below it. */
   reset(scale) {
     Object.assign(this, { target: [0, 0, 0], scale });
   }
@@ -34,7 +34,7 @@ export class Camera {
     return { right: inBody([ca, 0, -sa]), up: inBody([-se * sa, ce, -se * ca]), eye: inBody([ce * sa, se, ce * ca]) };
   }
 
-  /** By lengths of the body to the right and upwards. */
+  /** Moves by lengths of the body to the right and upwards. */
   move(right, up) {
     const axes = this.axes();
     this.target = this.target.map((x, i) => x - right * axes.right[i] - up * axes.up[i]);
@@ -45,18 +45,18 @@ export class Camera {
     this.elevation = Math.max(-90, Math.min(90, this.elevation + up));
   }
 
-  /** About the point that lies (right, up) from the middle of the picture. */
+  /** Zooms about the point that lies (right, up) from the middle of the picture. */
   zoom(factor, right = 0, up = 0) {
     this.move(right * (1 / factor - 1), up * (1 / factor - 1));
     this.scale /= factor;
   }
 }
 
-/** Lets the events of `place` move the camera; `changed` is called after each. */
+/** Lets the events of `place` control the camera; `changed` is called after each. */
 export function bindCamera(place, camera, home, changed) {
   const pointers = new Map();
   const lengthPerPixel = () => (2 * camera.scale) / place.clientHeight;
-  /** From the middle of the picture to the right and upwards, in lengths of the body. */
+  /** The position relative to the middle of the picture, to the right and upwards, in lengths of the body. */
   const fromMiddle = (event) => {
     const box = place.getBoundingClientRect();
     return [(event.clientX - box.left - box.width / 2) * lengthPerPixel(), (box.top + box.height / 2 - event.clientY) * lengthPerPixel()];

@@ -1,4 +1,4 @@
-// What the charts share: drawing at the width there is, on paper too; legends; curves on logarithmic axes.
+// Common parts of the charts: drawing at the available width, on paper too; legends; curves on logarithmic axes.
 
 import * as Plot from "@observablehq/plot";
 import { count, element, logTicks, number, percent } from "./dom.js";
@@ -20,8 +20,8 @@ addEventListener("beforeprint", () => drawAll(true));
 addEventListener("afterprint", () => drawAll(false));
 
 /**
- * A chart drawn anew by draw(width, onPaper) whenever its place changes width. `share`: of the width of paper; `name`: of the
- * files that a reader saves, with the table rows().
+ * A chart redrawn by draw(width, onPaper) whenever the width of its place changes. `share`: fraction of the width of paper;
+ * `name`: of the files that a reader saves, with the table rows().
  */
 export function responsive(label, draw, { minimum = 280, share = 1, name, rows } = {}) {
   const place = element("div", { class: "chart", role: "img", "aria-label": label });
@@ -81,7 +81,7 @@ export function dofAxis(lines, width) {
     ticks: logTicks(Math.min(...x), Math.max(...x), width < 520 ? 4 : 7) };
 }
 
-/** Curves { name, colour, points: { x, y, level } } with what the pointer is told of the nearest one. */
+/** Curves { name, colour, points: { x, y, level } } with a tooltip for the nearest one. */
 export function curveMarks(lines, valueText) {
   const points = lines.flatMap(({ name, points: all }) => all.map((point) => ({ ...point, name })));
   return [
@@ -97,7 +97,7 @@ export function curveRows(lines) {
   return lines.flatMap(({ name, points }) => points.map(({ level, x, y }) => ({ curve: name, level, dofs: x, value: y })));
 }
 
-/** The interval that all values lie in, with room on a logarithmic axis. */
+/** The interval that contains all values, with a margin on a logarithmic axis. */
 export function logRange(values) {
   return [Math.min(...values) * 0.5, Math.max(...values) * 1.4];
 }

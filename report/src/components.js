@@ -8,7 +8,7 @@ const palettes = {
   algebra: ["#9aa3ad"],
 };
 
-/** `components`: name, meaning, part and cause of each; those of one cause get the colours of its palette in turn. */
+/** `components`: name, meaning, part and cause of each; those of one cause get successive colours of its palette. */
 export function coloured(components) {
   const place = ({ cause }, i) => components.slice(0, i).filter((other) => other.cause === cause).length;
   return components.map((component, i) => ({ ...component, colour: palettes[component.cause][place(component, i)] }));

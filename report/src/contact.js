@@ -34,7 +34,7 @@ const panels = [
   { key: "slip", title: (scale) => headed("slip", unit("length"), scale), colour: "#8458a3", zero: true },
 ];
 
-/** Those of a joint: of water, and of a bond. */
+/** The panels of a joint: of water, and of a bond. */
 const panelsOfWater = [
   { key: "effective", title: (scale) => headed("effective pressure", unit("stress"), scale), colour: "#0072b2", zero: true },
   { key: "water", title: (scale) => headed("pressure of the water", unit("stress"), scale), colour: "#56b4e9", zero: true },
@@ -86,7 +86,7 @@ function profileCharts(run, profile) {
     zoneText(zones));
 }
 
-/** Where the zones meet. */
+/** The positions of zone boundaries. */
 function zoneText(zones) {
   if (zones.length < 2 || zones.length > 9) return null;
   return element("p", { class: "note" }, "Zones: ", zones.map(({ from, to, status }) =>
@@ -109,7 +109,7 @@ function contactPoints(surface, limit) {
   return { rows, centre };
 }
 
-/** The coordinate over which the pressure goes up and down least. */
+/** The coordinate over which the pressure oscillates least. */
 function bestCoordinate(rows, names) {
   const variation = (name) => {
     const sorted = [...rows].sort((a, b) => a[name] - b[name]);
@@ -119,7 +119,7 @@ function bestCoordinate(rows, names) {
   return names.map((name) => [variation(name), name]).reduce((best, other) => (other[0] < best[0] ? other : best))[1];
 }
 
-/** `names`: of the boundaries that the points are on. */
+/** `names`: boundaries of the points. */
 function scatterChart(surface, names, quantity) {
   const { rows, centre } = contactPoints(surface, 3000);
   const coordinates = Object.fromEntries([["x", "x"], ["y", "y"], ["z", "z"],
@@ -162,7 +162,7 @@ function contactIn3d(run, surface) {
   surface.nContactFaces > 0 ? scatterChart(surface, names.filter((name) => !surface.pairs?.some(({ boundary }) => boundary === name)), quantity) : ""];
 }
 
-/** In 2D: curves along each boundary; of load steps those of the step that is chosen, at first the last one. */
+/** In 2D: curves along each boundary; for load steps those of the chosen step, initially the last one. */
 async function contactIn2d(run, levels) {
   const place = element("div", {});
   const draw = async (level) => place.replaceChildren(...(await readSurface(level)).profiles.filter(({ arc }) => arc.length > 1)
@@ -176,7 +176,7 @@ async function contactIn2d(run, levels) {
   return [element("div", { class: "controls screen-only" }, element("label", { class: "control" }, element("span", {}, "Step"), step)), place];
 }
 
-/** What a length or an area adds up to, and how much of it is open. */
+/** The total length or area, and the open part of it. */
 function summaryOfProfiles(profiles) {
   const summary = { size: 0, open: 0, largest: 0, place: null };
   for (const { arc, status, pressure, points } of profiles)
@@ -204,7 +204,7 @@ function summaryOfSurface(surface) {
   return summary;
 }
 
-/** `start()` fills the section, `summary()` says what the contact boundary comes to, once the data are unpacked. */
+/** `start()` fills the section, `summary()` describes the contact boundary, once the data are unpacked. */
 export function contactSection(data) {
   const run = data.certificate;
   if (!run.contact || run.status === "failed") return { element: null, start: async () => {}, summary: async () => null };

@@ -5,8 +5,8 @@ import { latticePoints, latticeTriangles, latticeWeights } from "./lattice.js";
 export const contactColumns = ["pressure", "friction", "limit", "gap", "slip"];
 
 /**
- * Triangles on faces, each cut into those of a lattice, with corners that turn anticlockwise seen from outside; `corners`: of the
- * triangles on their faces, null for whole faces; `values`: per point of the lattice of each, `status` per triangle.
+ * Triangles on faces, each cut into those of a lattice, with corners anticlockwise as seen from outside; `corners`: of the
+ * triangles on their faces, null for whole faces; `values`: per lattice point of each, `status` per triangle.
  */
 function partOnFaces(surface, boundary, side, { faces, corners }, { subdivision, values }) {
   const [triangles, lattice] = [latticeTriangles(subdivision), latticePoints(subdivision)];
@@ -35,7 +35,7 @@ function partOnFaces(surface, boundary, side, { faces, corners }, { subdivision,
   return part;
 }
 
-/** Against obstacles: the first faces of the surface, boundary by boundary. */
+/** Contact with obstacles: the first faces of the surface, boundary by boundary. */
 function obstacleParts(surface) {
   const { contact, nFacePoints, subdivision, nContactFaces } = surface;
   if (nContactFaces === 0) return [];
@@ -49,7 +49,7 @@ function obstacleParts(surface) {
   });
 }
 
-/** Between bodies: segments on both sides, or means over the facets of one. */
+/** Contact between bodies: segments on both sides, or means over the facets of one. */
 function pairParts(surface) {
   return (surface.pairs ?? []).flatMap((pair) => ["slave", "master"].filter((side) => pair[side]).map((side) =>
     Object.assign(partOnFaces(surface, pair.boundary, side, pair[side], pair), { around: pair.boundary_faces })));
@@ -61,7 +61,7 @@ export function contactParts(surface) {
   return surface.parts;
 }
 
-/** Those that have the values of a boundary, each place once. */
+/** The parts with the values of a boundary, each place once. */
 export function contactSides(surface) {
   return contactParts(surface).filter(({ side }) => side !== "master");
 }
@@ -84,8 +84,8 @@ function joined(Kind, arrays) {
 }
 
 /**
- * The surface with the segments between bodies on it, as corners before all others, which coloured ones are; `lift`: what keeps
- * them in front of the faces that they lie on. The same surface where there are none.
+ * The surface with the segments between bodies, whose corners precede all others, since coloured ones come first; `lift`: keeps
+ * them in front of the faces they lie on. Returns the same surface where there are none.
  */
 export function withSegments(surface) {
   surface.layered ??= layered(surface);

@@ -3,13 +3,13 @@
 import { legend, logLogChart, logRange, slope } from "./charts.js";
 import { element, number, section } from "./dom.js";
 
-// Drawn over the bound, which they may nearly be equal to.
+// Drawn over the bound, which may nearly coincide with them.
 const trueErrors = [
   { key: "dual_norm", name: "dual norm of the residual", colour: "#8a94a0", dash: "2 3" },
   { key: "stress_error", name: "true error of the stress", colour: "#4fc38a", dash: "7 4" },
 ];
 
-/** The curves of levels, relative to the norm of the stress; components that are round-off are left out. */
+/** The curves of levels, relative to the norm of the stress; components at rounding level are omitted. */
 export function boundCurves(levels, components) {
   const curve = (style, value) => ({ ...style, points: levels
     .map((level) => ({ x: level.dofs, y: value(level) / (level.largest_sigma ?? level.sigma_norm), level: level.level }))
@@ -25,7 +25,7 @@ export function boundCurves(levels, components) {
     .filter(({ points }) => points.length > 0);
 }
 
-/** The bound, the errors, the components, as a legend names them. */
+/** The bound, the errors and the components as legend entries. */
 export function curveLegend(lines, kind) {
   const rank = ({ isBound, isEnergy, isError }) => (isBound ? 0 : isEnergy || isError ? 1 : 2);
   return legend([...lines].sort((a, b) => rank(a) - rank(b)).map((line) =>

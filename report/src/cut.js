@@ -1,4 +1,4 @@
-// A body in 3D cut by a plane: what is left of its surface, and the section through its cells.
+// A body in 3D cut by a plane: the rest of its surface, and the section through its cells.
 
 /** Points between two others, three for each triangle: from + t (to - from). */
 class Mix {
@@ -16,7 +16,7 @@ class Mix {
     this.t.push(t);
   }
 
-  /** A convex polygon as triangles. */
+  /** Adds a convex polygon as triangles. */
   addPolygon(points) {
     for (let i = 2; i < points.length; ++i) for (const k of [0, i - 1, i]) this.add(points[k]);
   }
@@ -34,7 +34,7 @@ class Mix {
 
 const crossing = (a, b, distance) => [a, b, distance(a) / (distance(a) - distance(b))];
 
-/** What of the triangles of corners 0, 1, 2; 3, 4, 5; ... lies where the distance is not positive. */
+/** The part of the triangles with corners 0, 1, 2; 3, 4, 5; ... where the distance is not positive. */
 function cutTriangles(nCorners, distance) {
   const mix = new Mix();
   for (let first = 0; first < nCorners; first += 3) {
@@ -49,7 +49,7 @@ function cutTriangles(nCorners, distance) {
   return mix;
 }
 
-/** The polygons in which the plane meets the tetrahedra. */
+/** The polygons in which the plane intersects the tetrahedra. */
 function section(cells, distance) {
   const mix = new Mix();
   for (let first = 0; first < cells.length; first += 4) {
@@ -63,7 +63,7 @@ function section(cells, distance) {
   return mix;
 }
 
-/** The plane through the undeformed body where the coordinate `axis` is `level`; what lies on its `side`, 1 or -1, is cut off. */
+/** The plane through the undeformed body where the coordinate `axis` equals `level`; the part on its `side`, 1 or -1, is cut off. */
 export class Cut {
   constructor(surface, volume, { axis, level, side }) {
     const { points, vertex } = surface;
@@ -76,7 +76,7 @@ export class Cut {
     return this.surface.length + this.section.length;
   }
 
-  /** Values at the corners of the surface and at the vertices of the volume as values at the corners that are drawn. */
+  /** Converts values at the corners of the surface and at the vertices of the volume to values at the drawn corners. */
   spread(ofCorners, ofVolume, width) {
     const onSurface = this.countOf(ofCorners.length / width);
     const result = new Float32Array(width * (ofVolume ? this.nCorners : onSurface));
@@ -85,13 +85,13 @@ export class Cut {
     return result;
   }
 
-  /** How many of the drawn corners come from the first n of the surface. */
+  /** The number of drawn corners that come from the first n of the surface. */
   countOf(n) {
     const beyond = this.surface.from.findIndex((corner) => corner >= n);
     return beyond < 0 ? this.surface.length : beyond;
   }
 
-  /** Those pairs of vertices of which both are left. */
+  /** The pairs of vertices of which both remain. */
   segments(all) {
     const kept = [];
     for (let s = 0; s < all.length; s += 2) if (this.isKept(all[s]) && this.isKept(all[s + 1])) kept.push(all[s], all[s + 1]);

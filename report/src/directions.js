@@ -1,4 +1,4 @@
-// From where a body in 3D is looked at first.
+// The initial viewing directions for a body in 3D.
 
 import { Camera } from "./camera.js";
 import { areaVector } from "./surface.js";
@@ -17,7 +17,7 @@ function meanContactNormal(surface) {
   return normal.map((x) => x / (area || 1));
 }
 
-/** The axis across the interfaces between bodies; z where they turn. */
+/** The axis across the interfaces between bodies; z where their directions vary. */
 function axisAcross(interfaces) {
   const [sum, area] = interfaces.reduce(([vector, total], { normal, measure }) =>
     [vector.map((x, i) => x + measure * Math.abs(normal[i])), total + measure], [[0, 0, 0], 0]);
@@ -25,7 +25,7 @@ function axisAcross(interfaces) {
   return sum[axis] > 0.8 * area ? axis + 1 : 3;
 }
 
-/** The axis that points away from what the body lies on; z where it does not lie on anything. As camera.js numbers them. */
+/** The axis that points away from the support of the body; z where there is none. Numbered as in camera.js. */
 export function upAxis(surface) {
   const normal = meanContactNormal(surface);
   if (Math.hypot(...normal) < 0.5) return axisAcross(surface.interfaces ?? []);
@@ -33,7 +33,7 @@ export function upAxis(surface) {
   return -Math.sign(normal[axis]) * (axis + 1);
 }
 
-/** Where contact values are to be seen from: outside the contact boundary. */
+/** The direction from which contact values are visible: outside the contact boundary. */
 export function contactDirection(surface, camera) {
   const mean = meanContactNormal(surface);
   const [x, y, z] = camera.frame.map((axis) => dot(axis, mean) / (Math.hypot(...mean) || 1));
@@ -41,7 +41,7 @@ export function contactDirection(surface, camera) {
     : { azimuth: 35, elevation: y < 0 ? -40 : 40 };
 }
 
-/** From above, from the corner from which most of large values is seen: often that is where a model is cut by symmetry. */
+/** From above, at the corner that shows most of the large values: often that is where a model is cut by symmetry. */
 export function firstDirection(surface, values, range, up) {
   if (surface.dimension === 2) return {};
   const seen = [35, 125, 215, 305].map((azimuth) => {

@@ -21,7 +21,7 @@ export function section(id, short, title, lead, ...content) {
     element("h2", { id: `${id}-title` }, title), lead ? element("p", { class: "lead" }, lead) : null, content);
 }
 
-/** `head`: names of the columns, as text or children, those with a leading "#" hold numbers. */
+/** `head`: column names, as text or children; those with a leading "#" contain numbers. */
 export function table(head, rows, attributes = {}) {
   const heads = head.map((name) => [name].flat(Infinity));
   const isNumber = heads.map(([first]) => typeof first === "string" && first.startsWith("#"));
@@ -54,20 +54,20 @@ export function number(value, digits = 4) {
   return signed === "1" ? power : `${signed}\u00d7${power}`;
 }
 
-/** The values with 0 in place of those that are round-off beside the largest, or beside `scale`. */
+/** The values with 0 in place of those that are round-off relative to the largest, or to `scale`. */
 export function withoutNoise(values, scale = 0) {
   const limit = 1e-9 * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), scale);
   return values.map((value) => (Math.abs(value) <= limit ? 0 : value));
 }
 
-/** What the values of an axis are divided by, and how its title says so: values from 0.001 to 100 000 stay as they are. */
+/** The power of ten that axis values are divided by, and its text for the title: values from 0.001 to 100 000 stay unchanged. */
 export function powerOfTen(values) {
   const largest = values.reduce((size, value) => Math.max(size, Math.abs(value)), 0);
   const exponent = largest === 0 || (largest >= 5e-3 && largest < 1e5) ? 0 : Math.floor(Math.log10(largest));
   return { factor: 10 ** exponent, unit: (name) => (exponent === 0 ? name : `10${superscript(exponent)} ${name}`) };
 }
 
-/** A number with the given digits behind the point. */
+/** A number with the given number of decimals. */
 export function fixed(value, digits = 2) {
   return value === null || value === undefined || Number.isNaN(value) ? "\u2013" : value.toFixed(digits).replace("-", "\u2212");
 }

@@ -30,7 +30,7 @@ function sizeOf(svg) {
   return [width || svg.clientWidth, height || svg.clientHeight];
 }
 
-/** SVG elements below each other as one picture with a background. */
+/** Combines SVG elements, one below another, into a picture with a background. */
 function picture(svgs) {
   const sizes = svgs.map(sizeOf);
   const width = Math.max(...sizes.map(([w]) => w));
@@ -67,7 +67,7 @@ export function downloadCsv(name, rows) {
   download(`${name}.csv`, "text/csv", csvFormat(rows));
 }
 
-/** Buttons for files `name`.svg, .png, .csv; `svgs()` and `rows()` say of what. */
+/** Buttons for the files `name`.svg, .png, .csv; `svgs()` and `rows()` give their contents. */
 export function exportButtons(name, svgs, rows) {
   const button = (kind, action) => element("button", { type: "button", title: `save as ${name}.${kind.toLowerCase()}`, onclick: action }, kind);
   return element("div", { class: "export screen-only" }, button("SVG", () => downloadSvg(name, svgs())),

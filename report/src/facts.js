@@ -1,4 +1,4 @@
-// What is guaranteed, what the case was, where it ran, and the other files.
+// The guarantee, the case, the machine, and the other files.
 
 import { unpackText } from "./arrays.js";
 import { count, element, number, seconds, section, table, withoutNoise } from "./dom.js";
@@ -18,7 +18,7 @@ export function definitions(pairs) {
 
 export function guaranteeSection(run) {
   const identities = run.identities && Object.entries(run.identities)
-    .filter(([name, value]) => value !== null && (name !== "symmetry" || run.p > 1)) // degree 1 has none
+    .filter(([name, value]) => value !== null && (name !== "symmetry" || run.p > 1)) // degree 1 has no such identity
     .map(([name, value]) => [name, number(value, 2)]);
   return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
     element("div", { class: "two-columns" },
@@ -41,7 +41,7 @@ function caseText(effective) {
     element("pre", { tabindex: 0 }, text), sha256 ? element("p", { class: "note" }, `SHA-256 ${sha256}`) : null);
 }
 
-/** Loads, reactions and contact forces with their sum, which vanishes in equilibrium. */
+/** Loads, reactions and contact forces with their sum, which is zero in equilibrium. */
 function balanceTable(balance, d) {
   if (!balance?.rows?.length) return null;
   const [forces, moments] = [unit("force"), unit("moment")];
@@ -62,7 +62,7 @@ function balanceTable(balance, d) {
     balance.note ? element("p", { class: "note" }, balance.note) : null];
 }
 
-/** In which units the numbers are. */
+/** The units of the numbers. */
 function unitsText({ d, units }) {
   if (!units) return `The case names no units: lengths, stresses and forces are in those of its numbers${d === 2 ? ", forces per unit of depth" : ""}.`;
   return `Lengths are in ${unit("length")}, stresses in ${unit("stress")}, forces in ${unit("force")}${d === 2 ? `, per ${unit("length")} of depth` : ""}.`;
@@ -89,7 +89,7 @@ function levelTable(run) {
       seconds(level.times.certify), seconds(level.times.level)]), { class: "long" });
 }
 
-/** Wall seconds by stage, beside where they were measured. */
+/** Wall seconds by stage, and the machine. */
 export function timesAndMachine(times, machine, program) {
   const memory = machine.memory > 0 ? `, ${Math.round(machine.memory / 2 ** 30)} GiB of memory` : "";
   return element("div", { class: "two-columns" },
@@ -114,7 +114,7 @@ const contents = { "certificate.json": "the whole result, for programs", "conver
   "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
   "../report.html": "the study that this run belongs to" };
 
-/** Tables that the page holds: it may be read where the files are not. */
+/** Tables stored in the page, which may be read without the files. */
 function heldTables({ tables, certificate }) {
   const texts = { ...tables, "certificate.json": { plain: JSON.stringify(certificate, null, 2) } };
   const held = Object.entries(texts).filter(([, packed]) => packed);

@@ -38,7 +38,7 @@ export class FieldControls {
       button("the whole body", "Reset view", view.home), exportButtons("fields", view.svgs, view.rows));
   }
 
-  /** Both ends, or null unless they are numbers in order. */
+  /** Both ends; null unless they are numbers in ascending order. */
   typedRange() {
     const [low, high] = [this.low, this.high].map(({ value }) => (value === "" ? NaN : Number(value)));
     return low < high ? { low, high } : null;

@@ -1,4 +1,4 @@
-// What the picture of the fields says in words, and by how much it enlarges displacements.
+// Texts of the picture of the fields, and the scale factor of displacements.
 
 import { statusNames } from "./components.js";
 import { count, number } from "./dom.js";
@@ -10,14 +10,14 @@ function roundedDown(x) {
   return [5, 2, 1].find((digit) => digit * power <= x * (1 + 1e-9)) * power;
 }
 
-/** The amplification at which the largest displacement is a tenth of the body, 1 where it is not small. */
+/** The amplification that makes the largest displacement a tenth of the body, 1 where it is not small. */
 export function usualFactor({ largestDisplacement, box }) {
   if (largestDisplacement === 0) return 1;
   const factor = (0.1 * box.diagonal) / largestDisplacement;
   return factor < 1.5 ? 1 : roundedDown(factor);
 }
 
-/** Below the picture: what of the mesh is shown, and how. */
+/** Text below the picture: which part of the mesh is shown, and how. */
 export function noteText(surface, { factor, explosion }, { isCut, isInside, isSlow, stage, nLeftOut }) {
   return [
     isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly." : "",
@@ -29,7 +29,7 @@ export function noteText(surface, { factor, explosion }, { isCut, isInside, isSl
     `Displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`].filter(Boolean).join(" ");
 }
 
-/** A value of a field under the pointer; null where it has none there. `names`: of the categories. */
+/** The value of a field under the pointer; null where it has none there. `names`: of the categories. */
 export function valueText(field, value, names) {
   if (value === null) return field.contact ? "not on the contact boundary" : "known on the surface only";
   if (field.kind === "status") return statusNames[Math.round(value)];

@@ -19,8 +19,8 @@ import { hasWebGL, Scene } from "./scene.js";
 import { SoftwareScene } from "./software.js";
 import { stagesOf } from "./stages.js";
 
-const paperWidth = 530; // CSS pixels of the picture on paper, beside its legend
-const manySegments = 30000; // beyond, the mesh is not drawn unless asked for
+const paperWidth = 530; // CSS pixels of the picture on paper, next to its legend
+const manySegments = 30000; // beyond this, the mesh is drawn only on request
 
 class FieldView {
   constructor(data, components) {
@@ -53,7 +53,7 @@ class FieldView {
         + "zoom, double-click for the whole body; keys: arrows, +, \u2212, 0. With fingers: tap first, then drag and pinch; tap elsewhere to scroll on."));
   }
 
-  /** The first picture; afterwards the page may be looked at. */
+  /** Draws the first picture; afterwards the page is ready. */
   async start() {
     this.volume = await this.readVolume();
     await this.set({});
@@ -64,7 +64,7 @@ class FieldView {
     this.place.addEventListener("pointerleave", () => { this.pointer = null; this.point(); });
   }
 
-  /** The inside of the body on the last level, about its centre. */
+  /** Reads the interior of the body on the last level, relative to its centre. */
   async readVolume() {
     if (!this.data.volume) return null;
     const volume = await unpackAll(this.data.volume);
@@ -72,7 +72,7 @@ class FieldView {
     return { ...volume, box, dimension: 3, nVertices: volume.points.length / 3, vertexBody: volume.bodies };
   }
 
-  /** Gives the picture the size and the background of its place; drawn only where they change, for that may take long. */
+  /** Adapts the picture to the size and background of its place; redraws only if they change, since that may take long. */
   fit() {
     const { clientWidth: width, clientHeight: height } = this.place;
     const style = getComputedStyle(this.frame);
@@ -88,7 +88,7 @@ class FieldView {
     return readSurface(this.levels[index]);
   }
 
-  /** Takes over what is given of the state and shows it. Of changes that overtake each other the last one counts. */
+  /** Applies changes of the state and shows it. Of overlapping changes the last one counts. */
   async set(changes) {
     Object.assign(this.state, changes);
     const ticket = (this.ticket = (this.ticket ?? 0) + 1);
@@ -123,7 +123,7 @@ class FieldView {
     this.controls.setFields(this.fields);
   }
 
-  /** Camera and scene, for the first surface. */
+  /** Creates camera and scene for the first surface. */
   prepare(surface) {
     this.up = surface.dimension === 3 ? upAxis(surface) : 2;
     this.camera = new Camera(surface.dimension, { up: this.up });
@@ -138,7 +138,7 @@ class FieldView {
     this.fit();
   }
 
-  /** The volume belongs to the last level; on others a cut shows the surface from within. */
+  /** The volume belongs to the last level; on others a cut shows the inside of the surface. */
   takeCut() {
     const { axis, place, side, level } = this.state;
     const { box, vertex } = this.shown;
@@ -149,7 +149,7 @@ class FieldView {
     this.takeUndeformed();
   }
 
-  /** Numbers at the corners of the surface, and at the vertices of the volume where they are known there, at the corners drawn. */
+  /** Converts values at the corners of the surface, and at the vertices of the volume where known, to the drawn corners. */
   drawn(ofCorners, ofVolume, width) {
     return this.cut ? this.cut.spread(ofCorners, this.inside && ofVolume?.(this.inside), width) : ofCorners;
   }
@@ -174,12 +174,12 @@ class FieldView {
     this.legend.append(this.bodies.element);
   }
 
-  /** The names of the values of a field that are numbers of something. */
+  /** The names of the values of a field that are category numbers. */
   categories({ id }) {
     return id === "body" ? this.bodies.names : this.data.certificate.mesh.regions.map(({ name }) => name);
   }
 
-  /** Where the bodies are drawn; undefined for one alone. */
+  /** The displaced positions of bodies; undefined for a single one. */
   layout() {
     return this.current.vertexBody ? this.bodies.layout(this.state.explosion) : undefined;
   }
@@ -219,7 +219,7 @@ class FieldView {
     this.place.setAttribute("aria-label", `${this.field.label} on ${this.stages.name} ${surface.level}, displacements times ${number(state.factor, 3)}`);
   }
 
-  /** The whole body, with room for its displacements. */
+  /** Shows the whole body, with room for its displacements. */
   home() {
     const { middle, size } = this.bodies.extent(this.current, this.state.explosion);
     const aspect = this.place.clientWidth / Math.max(1, this.place.clientHeight) || 1.5;
@@ -230,7 +230,7 @@ class FieldView {
     this.homeView = { scale, target: middle };
   }
 
-  /** Whether the picture is as home() leaves it but for turning. */
+  /** Whether the picture is as home() leaves it, except for rotation. */
   isHome() {
     return this.camera.scale === this.homeView.scale && this.camera.target === this.homeView.target;
   }
@@ -254,7 +254,7 @@ class FieldView {
     this.overlay.replaceChildren(...this.overlayOn(this.place));
   }
 
-  /** Says what is under the pointer, anew whenever either moves. */
+  /** Describes the point under the pointer, again whenever either moves. */
   point() {
     if (this.pointing) return;
     this.pointing = requestAnimationFrame(() => {
@@ -285,7 +285,7 @@ class FieldView {
     this.tooltip.style.top = `${py + this.place.offsetTop + 14}px`;
   }
 
-  /** On paper the canvas would be empty: there its picture stands with all that lies on it. */
+  /** On paper the canvas would be empty; its image replaces it, with everything drawn over it. */
   keepPicture() {
     this.render();
     const { offsetLeft: x, offsetTop: y, clientLeft, clientTop } = this.place;

@@ -1,4 +1,4 @@
-// The contact boundary in 3D in a plane: as it is seen along its mean normal, or unrolled where it is part of a cylinder.
+// The contact boundary in 3D mapped to a plane: projected along its mean normal, or unrolled where it is part of a cylinder.
 
 import { partArea } from "./contact_parts.js";
 
@@ -11,7 +11,7 @@ const coordinateAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 /** Eigenvalues of a symmetric 3 x 3 matrix, the smallest first, and its eigenvectors: Jacobi's rotations. */
 export function eigen(matrix) {
   const a = matrix.map((row) => [...row]);
-  const v = coordinateAxes.map((row) => [...row]); // rows are the vectors
+  const v = coordinateAxes.map((row) => [...row]); // the rows are the vectors
   for (let sweep = 0; sweep < 12; ++sweep)
     for (const [p, q] of [[0, 1], [0, 2], [1, 2]]) {
       if (a[p][q] === 0) continue;
@@ -81,7 +81,7 @@ function unrolled(triangles, axis) {
   const radius = mean(({ middle }) => Math.hypot(...fromAxis(middle)));
   if (!(mean(({ middle }) => Math.abs(Math.hypot(...fromAxis(middle)) - radius)) < 0.03 * radius)) return null;
   const middle = [0, 1].map((i) => mean((triangle) => fromAxis(triangle.middle)[i]));
-  const first = Math.hypot(...middle) > 0.05 * radius ? Math.atan2(middle[1], middle[0]) : 0; // the cut lies opposite
+  const first = Math.hypot(...middle) > 0.05 * radius ? Math.atan2(middle[1], middle[0]) : 0; // the cut is opposite
   const flat = (point, near) => {
     const [x, y] = fromAxis(point);
     const turn = Math.PI * 2;
@@ -93,19 +93,20 @@ function unrolled(triangles, axis) {
   return { names: [`around, radius ${Number(radius.toPrecision(3))}`, nameOf(along)], flat };
 }
 
-/** What maps points onto the plane: flat(point, near), beside the point `near` of the plane. */
+/** The map onto the plane: flat(point, near), close to the point `near` of the plane. */
 export function flattening(parts) {
   const triangles = trianglesOf(parts);
   const total = triangles.reduce((sum, { size }) => sum + size, 0) || 1;
   const sum = (value) => triangles.reduce((all, triangle) => all + triangle.size * value(triangle), 0) / total;
   const squares = [0, 1, 2].map((i) => [0, 1, 2].map((j) => sum(({ normal }) => normal[i] * normal[j])));
   const [least, second] = eigen(squares);
-  // Normals of facets with corners on a cylinder are not quite across its axis; of a part of a sphere two eigenvalues are alike.
+  // Normals of facets with corners on a cylinder are not exactly perpendicular to its axis; on part of a sphere two eigenvalues
+  // are alike.
   const cylinder = least.value < 0.02 && second.value > Math.max(0.02, 5 * least.value) ? unrolled(triangles, least.vector) : null;
   return cylinder ?? ontoPlane([0, 1, 2].map((i) => sum(({ normal }) => normal[i])), [0, 1, 2].map((i) => sum(({ normal }) => Math.abs(normal[i]))));
 }
 
-/** Corners of triangles in the plane, z = 0; `near`: of each triangle a point beside which all that is on its face has to be. */
+/** Corners of triangles in the plane, z = 0; `near`: for each triangle a point that everything on its face must be close to. */
 export function flatCorners(points, flat, near) {
   const corners = new Float64Array(points.length);
   for (let c = 0; c < points.length; c += 9) {

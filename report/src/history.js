@@ -1,4 +1,4 @@
-// The load steps of a run: what they lead to, step by step.
+// The load steps of a run and their results, step by step.
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
@@ -26,19 +26,19 @@ function pathChart({ title, name, xLabel, xUnit = "", x, yLabel, yUnit = "", lin
     lines.length > 1 ? legend(drawn.map((line) => ({ ...line, line: true, strokeWidth: 2 }))) : null);
 }
 
-/** Without what is rounding beside the largest value of all. */
+/** Sets values that are rounding relative to the largest of all to 0. */
 function cleared(lines) {
   const largest = Math.max(0, ...lines.flatMap(({ values }) => values.map(Math.abs)));
   return lines.map(({ name, values }) => ({ name, values: withoutNoise(values, largest) }));
 }
 
-/** The length of the force that holds a boundary. */
+/** The magnitude of the reaction force on a boundary. */
 function reaction({ balance }, boundary) {
   const row = balance?.rows.find(({ kind, name }) => kind === "reaction" && name === boundary);
   return row ? Math.hypot(...row.force) : 0;
 }
 
-/** The charts that say something: those whose lines are not all zero. */
+/** The informative charts: those whose lines are not all zero. */
 function charts(run) {
   const { steps } = run;
   const t = steps.map((step) => step.t);

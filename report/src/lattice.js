@@ -1,4 +1,4 @@
-// The lattice of a face, as app/page/page_surface.h numbers it.
+// The lattice of a face, numbered as in app/page/page_surface.h.
 
 const placeIn = (k) => (i, j) => j * (k + 1) - (j * (j - 1)) / 2 + i;
 
@@ -9,7 +9,7 @@ export function latticePoints(k) {
   return points;
 }
 
-/** The triangles of a face in the numbers of its points, in the order of triangle_middles(). */
+/** The triangles of a face by numbers of its points, in the order of triangle_middles(). */
 export function latticeTriangles(k) {
   const place = placeIn(k);
   const triangles = [];
@@ -28,7 +28,7 @@ export function latticeSides(k) {
   return [along.map((i) => place(i, 0)), along.map((i) => place(k - i, i)), along.map((i) => place(0, k - i))];
 }
 
-/** The triangle of the lattice that has the point (s, t): three places and their weights. */
+/** The triangle of the lattice that contains the point (s, t): three indices and their weights. */
 export function latticeWeights(k, s, t) {
   const place = placeIn(k);
   const [x, y] = [s, t].map((value) => Math.max(0, Math.min(k, value * k)));

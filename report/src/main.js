@@ -1,11 +1,11 @@
-// Reads the data that the program put into the page, and shows them section by section.
+// Reads the data embedded in the page by the program, and shows them section by section.
 
 import "./style.css";
 import { element } from "./dom.js";
 import { runPage } from "./run.js";
 import { studyPage } from "./study.js";
 
-/** What the script element of this id holds, or undefined. */
+/** The content of the script element with this id, or undefined. */
 function embedded(id) {
   const text = document.getElementById(id)?.textContent;
   return text && JSON.parse(text);
@@ -16,7 +16,7 @@ function navigation(sections) {
     element("a", { href: `#${part.id}` }, part.dataset.short)));
 }
 
-/** On paper everything is open. */
+/** Opens everything for printing. */
 function openOnPaper(page) {
   addEventListener("beforeprint", () => page.querySelectorAll("details").forEach((part) => { part.dataset.open = part.open; part.open = true; }));
   addEventListener("afterprint", () => page.querySelectorAll("details").forEach((part) => { part.open = part.dataset.open === "true"; }));

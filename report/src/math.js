@@ -16,7 +16,7 @@ const gradientNorm = () => sup(norm(i("\u2207", true), i("v")), n(2));
 const facetNorm = () => element("math:msubsup", {}, norm(i("v")), i("F"), n(2));
 const sumOver = (index) => sub(o("\u2211", { movablelimits: "false" }), i(index));
 
-/** What the texts contain, the longest first, and how it is set. */
+/** The fragments of the texts, the longest first, and their markup. */
 const fragments = [
   ["||grad v||^2", () => [gradientNorm()]],
   ["||v||_F^2 / h_F", () => [facetNorm(), o("/"), sub(i("h"), i("F"))]],
@@ -36,7 +36,7 @@ const fragments = [
 const escaped = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 const pattern = new RegExp(`(${fragments.map(([text]) => escaped(text)).join("|")})(?![\\w])`);
 
-/** A text of the program as children of an element, with its formulas set; as alternative text they stay as they are. */
+/** A text of the program as children of an element, with its formulas typeset; in alternative text they stay plain. */
 export function typeset(text) {
   const setting = Object.fromEntries(fragments);
   return text.split(pattern).filter(Boolean).map((part) => (setting[part] ? element("math:math", { alttext: part }, ...setting[part]()) : part));
@@ -47,9 +47,9 @@ const total = () => sub(i("\u03b7"), element("math:mtext", {}, "tot"));
 const squared = (names) => sup(bracket("(", names.flatMap((name, k) => (k === 0 ? [eta(name)] : [o("+"), eta(name)])), ")"), n(2));
 const display = (...children) => element("math:math", { display: "block" }, ...children);
 
-/** The bound from its components, sums over the cells T but for those of the whole body, which are shown where they are no round-off. */
+/** The bound from its components: sums over the cells T, except for those of the whole body, which are shown unless they are round-off. */
 export function boundFormula(components, values) {
-  // Of stress and transfer the norm of the sum counts.
+  // For stress and transfer the norm of the sum counts.
   const isPaired = components.some(({ name }) => name === "mor");
   const namesOf = (part) => components.filter((component) => component.part === part && component.name !== "mor")
     .map(({ name }) => (isPaired && name === "str" ? "str+mor" : name));
@@ -61,7 +61,7 @@ export function boundFormula(components, values) {
   return display(total(), o("="), element("math:msqrt", {}, ...cells), ...whole.flatMap((name) => [o("+"), eta(name)]));
 }
 
-/** What is guaranteed. */
+/** The formula of the guarantee. */
 export function guaranteeFormula() {
   const v = row(i("v"), o("\u2208"), sup(i("H"), n(1)));
   const root = element("math:msqrt", {}, gradientNorm(), o("+"), sumOver("F"), facetNorm(), o("/"), sub(i("h"), i("F")));

@@ -4,8 +4,8 @@ import { number, percent, seconds, section, table, withoutNoise } from "./dom.js
 import { stagesOf } from "./stages.js";
 
 /**
- * The sum of the components in a row, or null where one is not known: a step in 3D whose linearisation part alone is too large has
- * no other components, as the bound was not completed.
+ * The sum of the components in a row, or null if one is unknown: a step in 3D whose linearisation part alone is too large has no
+ * other components, as its bound was not completed.
  */
 function sumOf(components, row) {
   const values = components.map(({ name }) => row?.[name] ?? null);

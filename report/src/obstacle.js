@@ -5,7 +5,7 @@ import { areaVector } from "./surface.js";
 
 const farAway = 2; // diagonals of the body beyond which the obstacle is not drawn
 
-/** In 2D: for each point of a profile that of the obstacle, undefined where that is far away; about the centre of the body. */
+/** In 2D: the obstacle's point for each point of a profile, undefined where that is far away; relative to the centre of the body. */
 export function obstaclePoints({ points, displacement, normal, gap }, box, factor) {
   return Array.from(gap, (distance, i) => {
     const g = distance + displacement[2 * i] * normal[2 * i] + displacement[2 * i + 1] * normal[2 * i + 1];
@@ -28,7 +28,7 @@ function vertexNormals(surface, nCorners) {
   return normals;
 }
 
-/** In 3D: corners of triangles, about the centre of the body; `layout`: by how much bodies are moved. */
+/** In 3D: corners of triangles, relative to the centre of the body; `layout`: the displacements of bodies. */
 export function obstacleCorners(surface, factor, layout) {
   const { points, displacement, vertex, vertexBody, lattice, contact, box } = surface;
   const nCorners = 3 * surface.nContactFaces * surface.trianglesPerFace;

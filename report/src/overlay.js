@@ -1,4 +1,4 @@
-// What is drawn over the picture of a surface, as SVG: axes and the contact boundary in 2D, directions in 3D.
+// The SVG overlay of the picture of a surface: axes and the contact boundary in 2D, directions in 3D.
 
 import { scaleLinear } from "d3";
 import { statusColours } from "./components.js";
@@ -7,10 +7,10 @@ import { obstaclePoints } from "./obstacle.js";
 import { headed, measured, unit } from "./units.js";
 
 const hatchDistance = 9; // pixels
-const sideRatio = 5; // of lengths on the master to those on the slave; beyond, the master is left out between two points
-const manySegments = 120000; // beyond, the undeformed outline is not looked for
+const sideRatio = 5; // of lengths on the master to those on the slave; beyond, the master is omitted between two points
+const manySegments = 120000; // beyond this, the undeformed outline is not computed
 
-/** The function that gives the pixels, in `place`, of points given about the centre of the body. */
+/** The function that maps points relative to the centre of the body to pixels in `place`. */
 function toPixels({ clientWidth: width, clientHeight: height }, camera) {
   const { right, up } = camera.axes();
   const { target, scale } = camera;
@@ -22,7 +22,7 @@ function toPixels({ clientWidth: width, clientHeight: height }, camera) {
 const point = ([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`;
 const stretch = (from, to) => `M${point(from)}L${point(to)}`;
 
-/** Whether the points i and i + 1 of a profile are joined: otherwise another part of the boundary begins. */
+/** Whether the points i and i + 1 of a profile are joined; otherwise another part of the boundary begins. */
 function isStretch({ arc, points }, i, box) {
   const length = Math.hypot(points[2 * i + 2] - points[2 * i], points[2 * i + 3] - points[2 * i + 1]);
   return length <= arc[i + 1] - arc[i] + 1e-5 * box.diagonal;
@@ -30,7 +30,7 @@ function isStretch({ arc, points }, i, box) {
 
 const unmoved = [0, 0];
 
-/** By how much the body of a point is moved, null where it is not shown. */
+/** The displacement of a point's body, null where it is not shown. */
 function shiftOf(layout, bodies, i) {
   return layout ? layout[bodies[i]] ?? null : unmoved;
 }
@@ -49,7 +49,7 @@ function outline(surface, pixel, layout) {
   return element("svg:path", { class: "outline", d: path });
 }
 
-/** The obstacle with short lines on the side where it is. */
+/** The obstacle, hatched on its side. */
 function obstacleLine(profile, box, factor, pixel, layout) {
   const points = obstaclePoints(profile, box, factor).map((at, i) => {
     const shift = shiftOf(layout, profile.bodies, i);
@@ -90,7 +90,7 @@ function statusLines({ arc, points, displacement, bodies, status }, box, factor,
   return paths.map((d, i) => element("svg:path", { class: "status-line", d, stroke: statusColours[i] }));
 }
 
-/** Axes around a picture; `names`: of those to the right and upwards. */
+/** Axes around a picture; `names`: of the horizontal and the vertical axis. */
 export function axes({ box }, { target, scale }, { left, top, width, height }, names = ["x", "y"]) {
   const [cx, cy] = [box.centre[0] + target[0], box.centre[1] + target[1]];
   const reach = (scale * width) / height;
@@ -108,13 +108,13 @@ export function axes({ box }, { target, scale }, { left, top, width, height }, n
     element("svg:text", { x: left - 42, y: top - 6, class: "axis-name" }, `\u2191 ${headed(names[1], unit("length"))}`)];
 }
 
-/** Both sides of an interface: with the points, displacements and bodies of the master in the place of the slave's. */
+/** Both sides of an interface: the second with points, displacements and bodies of the master in place of the slave's. */
 function sidesOf(profile) {
   const { opposite: points, opposite_displacement: displacement, opposite_bodies: bodies } = profile;
   return points ? [profile, { ...profile, points, displacement, bodies, arc: lengthsAlong(profile, points) }] : [profile];
 }
 
-/** Lengths that grow as the points of the master do, where those of the slave are joined; by 0 where they are not. */
+/** Arc lengths along the points of the master where those of the slave are joined; they do not grow elsewhere. */
 function lengthsAlong({ arc }, points) {
   const lengths = [0];
   for (let i = 1; i < arc.length; ++i) {

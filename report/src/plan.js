@@ -14,7 +14,7 @@ import { colourRange } from "./surface.js";
 import { measured, unit } from "./units.js";
 
 const size = { left: 64, top: 22, bottom: 38, right: 8, width: 520 };
-const nKeySteps = 40; // of an arrow key, across the picture
+const nKeySteps = 40; // of an arrow key, to cross the picture
 
 export const quantities = {
   pressure: { label: "contact pressure", measures: "stress", kind: "sequential" },
@@ -25,7 +25,7 @@ export const quantities = {
 };
 const status = { label: "contact status", kind: "status" };
 
-/** All the faces of a slave, of which those with nothing opposite stay grey. */
+/** All faces of a slave; those with nothing opposite stay grey. */
 function pointsAround(surface, faces) {
   const triangles = latticeTriangles(surface.subdivision);
   const points = new Float64Array(3 * faces.length * triangles.length);
@@ -54,7 +54,7 @@ function boxOf(corners) {
   return { centre: low.map((x, i) => (x + high[i]) / 2), size: high.map((x, i) => x - low[i]) };
 }
 
-/** A parallel projection onto the plane, in the shape that software.js, overlay.js and pick.js take. */
+/** A parallel projection onto the plane, in the form expected by software.js, overlay.js and pick.js. */
 const viewOf = (scale) => ({ target: [0, 0, 0], scale, axes: () => ({ right: [1, 0, 0], up: [0, 1, 0], eye: [0, 0, 1] }) });
 
 /** The triangles of one boundary in the plane, about the middle of their box; those without values lie below. */
@@ -132,7 +132,7 @@ class BoundaryPlan {
     this.point(inside(x + length * step[0], this.width / 2), inside(y + length * step[1], this.height / 2), true);
   }
 
-  /** Says what is at a place of the picture; nothing without one. */
+  /** Describes a place of the picture; nothing without one. */
   point(x, y, isMarked = false) {
     this.at = x === undefined ? null : [x, y];
     const length = (2 * this.scale) / this.height;
@@ -171,8 +171,8 @@ class BoundaryPlan {
 }
 
 /**
- * A figure for each boundary; `quantity` and `isStatus`: elements that say which values are shown, or the states; `titles`: of
- * the boundaries by their names, without those that need none.
+ * A figure for each boundary; `quantity` and `isStatus`: elements that choose the values, or the states, to show; `titles`: of
+ * the boundaries by their names, omitting those that need none.
  */
 export function contactPlans(surface, quantity, isStatus, titles) {
   const sides = contactSides(surface);

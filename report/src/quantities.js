@@ -1,4 +1,4 @@
-// Numbers of the solution with the intervals that are certain to hold those of the exact one.
+// Quantities of the solution with intervals that are guaranteed to contain the exact values.
 
 import * as Plot from "@observablehq/plot";
 import { chartStyle, dofAxis, responsive } from "./charts.js";
@@ -8,7 +8,7 @@ import { headed, measured, quantityUnit } from "./units.js";
 
 const colour = "#0072b2";
 
-/** "between 1.63 and 1.66 N", or what there is. */
+/** "between 1.63 and 1.66 N", or as much as is known. */
 export function intervalText({ name, lower, upper, exact, reason }) {
   const unit = quantityUnit(name);
   if (reason || exact) return [unit, reason ? "no error bar" : "exact"].filter(Boolean).join(", ");

@@ -1,4 +1,4 @@
-// What contact comes to: forces of each boundary, what else there is to know of pairs, and the bodies with their parts of the bound.
+// Contact resultants: forces on each boundary, further data of pairs, and the bodies with their parts of the bound.
 
 import { count, element, number, percent, table, withoutNoise } from "./dom.js";
 import { headed, unit } from "./units.js";

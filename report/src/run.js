@@ -12,7 +12,7 @@ import { quantitiesSection } from "./quantities.js";
 import { nameUnits } from "./units.js";
 import { header } from "./verdict.js";
 
-/** `trueErrors`: what a study knows of the levels of a variant, else undefined. */
+/** `trueErrors`: errors of the levels of a variant known from a study, else undefined. */
 export function runPage(data, trueErrors) {
   const { certificate: run, machine } = data;
   nameUnits(run.units);

@@ -4,7 +4,7 @@ import { interpolateRgb, interpolateViridis, piecewise, scaleLinear, scaleLog } 
 import { element, number } from "./dom.js";
 import { statusColours, statusNames } from "./components.js";
 
-// Blue to orange through a light grey: told apart by everybody.
+// Blue to orange through a light grey: distinguishable for everybody.
 const diverging = piecewise(interpolateRgb, ["#1f4e8c", "#5b8fc7", "#b3cde3", "#f2f2ef", "#f6c48f", "#d9822b", "#8f4a0b"]);
 const categories = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#6b7580"];
 
@@ -19,7 +19,7 @@ export function colours(kind, range) {
   return interpolateViridis;
 }
 
-/** The scale on which a field is coloured: log10 of logarithmic ones. */
+/** The value on the colour scale of a field: log10 for logarithmic ones. */
 export function onScale(kind, value, range) {
   return kind === "logarithmic" ? Math.log10(Math.max(value, range.low)) : value;
 }
@@ -29,7 +29,7 @@ function listLegend(names, colourOf) {
     element("li", {}, element("span", { class: "swatch", style: `--colour:${colourOf(i)}` }), name)));
 }
 
-/** The names of those states that the legend of contact has to show; tied only where it is. */
+/** The names of the states in the legend of contact; tied only where present. */
 export function shownStates(present) {
   return statusNames.filter((_, i) => i < 3 || present.includes(i));
 }

@@ -22,7 +22,7 @@ class Layer {
     this.data = vtkPolyData.newInstance();
     this.mapper = vtkMapper.newInstance({ interpolateScalarsBeforeMapping: true, useLookupTableScalarRange: true });
     this.mapper.setInputData(this.data);
-    if (behind) { // lines on the surface are not to be hidden by it
+    if (behind) { // lines on the surface must not be hidden by it
       this.mapper.setResolveCoincidentTopologyToPolygonOffset();
       this.mapper.setResolveCoincidentTopologyPolygonOffsetParameters(1, 1);
     }
@@ -30,7 +30,7 @@ class Layer {
     this.actor.setMapper(this.mapper);
     const property = this.actor.getProperty();
     property.setLighting(lit);
-    property.setAmbient(lit ? 0.5 : 1); // the colours stay those of the scale, a little darker aslant
+    property.setAmbient(lit ? 0.5 : 1); // colours stay those of the scale, slightly darker at an angle
     property.setDiffuse(lit ? 0.5 : 0);
     property.setOpacity(opacity);
     if (colour) property.setColor(...unit(colour));
@@ -49,7 +49,7 @@ class Layer {
     this.data.modified();
   }
 
-  /** Colours of the values at the points; null: its own colour. */
+  /** Sets colours from the values at the points; null: its own colour. */
   setValues(values, transfer) {
     this.mapper.setScalarVisibility(values !== null);
     if (values === null) return;
@@ -101,7 +101,7 @@ export class Scene {
     return this.view.getCanvas();
   }
 
-  /** Triangles from `first` on to `end` are coloured, the others are not. */
+  /** Triangles from `first` to `end` are coloured, the others are not. */
   setTriangles(nTriangles, nColoured) {
     this.coloured.setCells("polys", triangleCells(0, nColoured));
     this.plain.setCells("polys", triangleCells(nColoured, nTriangles));
@@ -114,7 +114,7 @@ export class Scene {
     this.lines.setPoints(vertices);
   }
 
-  /** Values per corner, padded where only the first corners have one, and their colours. */
+  /** Sets values per corner, padded where only the first corners have one, and their colours. */
   setValues(values, nCorners, range, colourAt) {
     let padded = values;
     if (values.length < nCorners) {
@@ -149,7 +149,7 @@ export class Scene {
     this.lines.actor.getProperty().setColor(...unit(line));
   }
 
-  /** `distance`: beyond the body from anywhere. */
+  /** `distance`: larger than the body seen from anywhere. */
   render(camera, distance) {
     const { up, eye } = camera.axes();
     const active = this.renderer.getActiveCamera();

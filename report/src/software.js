@@ -1,4 +1,4 @@
-// The picture of a surface where the browser has no WebGL: the same as scene.js draws, by a depth buffer of its own.
+// The picture of a surface for browsers without WebGL: the same as in scene.js, with its own depth buffer.
 
 import { rgb } from "d3";
 
@@ -97,7 +97,7 @@ export class SoftwareScene {
       }
   }
 
-  /** Segments over what lies behind them, a third opaque. */
+  /** Draws segments over what lies behind them, a third opaque. */
   drawLines(p) {
     const { width, height } = this.canvas;
     const { data } = this.image;

@@ -1,4 +1,4 @@
-// What the pictures of a page are of: the load steps of a run, where it has any, else its levels.
+// The stages shown in the pictures of a page: the load steps of a run, if there are any, else its levels.
 
 import { number } from "./dom.js";
 

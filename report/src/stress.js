@@ -1,6 +1,6 @@
 // Stresses derived from the components of the equilibrated stress.
 
-/** The six components xx, yy, zz, xy, yz, xz at place i of the arrays; `ratio(i)`: zz / (xx + yy) in 2D. */
+/** The six components xx, yy, zz, xy, yz, xz at index i of the arrays; `ratio(i)`: zz / (xx + yy) in 2D. */
 function tensorAt(stress, ratio) {
   if (stress.length === 6) return (i) => stress.map((component) => component[i]);
   const [xx, yy, xy] = stress;
@@ -11,7 +11,7 @@ function vonMises([xx, yy, zz, xy, yz, xz]) {
   return Math.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy * xy + yz * yz + xz * xz));
 }
 
-/** The eigenvalues, the largest first: the roots of the characteristic polynomial by angles. */
+/** The eigenvalues, the largest first: the roots of the characteristic polynomial by the trigonometric formula. */
 export function principal([xx, yy, zz, xy, yz, xz]) {
   const mean = (xx + yy + zz) / 3;
   const [a, b, c] = [xx - mean, yy - mean, zz - mean];
@@ -24,7 +24,7 @@ export function principal([xx, yy, zz, xy, yz, xz]) {
   return [first, 3 * mean - first - last, last];
 }
 
-/** The stresses of which a picture can be drawn: id, label, kind and value(tensor). */
+/** The stresses that a picture can show: id, label, kind and value(tensor). */
 export function stressFields(dimension) {
   const names = dimension === 2 ? ["xx", "yy", "zz", "xy"] : ["xx", "yy", "zz", "xy", "yz", "xz"];
   const all = ["xx", "yy", "zz", "xy", "yz", "xz"];
@@ -37,7 +37,7 @@ export function stressFields(dimension) {
   ];
 }
 
-/** A stress at all places of the arrays. */
+/** A stress at all entries of the arrays. */
 export function stressValues(stress, ratio, value) {
   const at = tensorAt(stress, ratio);
   return Float32Array.from({ length: stress[0].length }, (_, i) => value(at(i)));

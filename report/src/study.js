@@ -31,7 +31,7 @@ function variantsSection(study, files) {
     variantsOf(study).map(levelTable));
 }
 
-/** All levels of a variant, to be opened. */
+/** All levels of a variant, in an expandable element. */
 function levelTable({ name, levels }) {
   const rows = levels.map((level) => [String(level.level), count(level.cells), count(level.dofs), String(level.newton_steps),
     percent(level.relative, 4), fixed(level.rate_bound), percent(level.relative_error, 4), fixed(level.rate_error),

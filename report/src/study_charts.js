@@ -6,10 +6,10 @@ import { boundCurves, curveLegend, valuesOf } from "./convergence.js";
 import { element, fixed, number, section } from "./dom.js";
 import { curveOf, levelsOf, variantsOf } from "./variants.js";
 
-const share = 0.47; // of the width of paper, for charts beside each other
+const share = 0.47; // of the width of paper, for charts side by side
 const panelHeight = (width) => Math.max(280, 0.72 * width);
 
-/** Charts beside each other with their titles. */
+/** Charts side by side with their titles. */
 function panels(charts) {
   return element("div", { class: "two-columns panels" }, charts.map(({ title, chart }) =>
     element("figure", {}, element("h3", {}, title), chart)));
@@ -47,7 +47,7 @@ export function convergenceSection(study) {
     variantLegend(study));
 }
 
-/** Quotients of which 1 is the least that a guarantee allows. */
+/** Quotients that the guarantee requires to be at least 1. */
 function quotientChart(label, lines, [low, high]) {
   return responsive(label, (width) => Plot.plot({
     width, height: Math.max(240, 0.55 * width), marginLeft: 58, marginRight: 18, marginTop: 28, marginBottom: 44, style: chartStyle,

@@ -1,16 +1,16 @@
-// What came out of a study, in words.
+// The results of a study, in words.
 
 import { count, element, fixed, number, percent, plural, seconds } from "./dom.js";
 import { definitions } from "./facts.js";
 import { extent, total, variantsOf } from "./variants.js";
 import { figure, kindOf, pageHeader } from "./verdict.js";
 
-// The part of the best rate that counts as reaching it.
+// The fraction of the best rate that counts as reaching it.
 const enough = 0.9;
 
 const allLevels = (study) => variantsOf(study).flatMap(({ key, levels }) => levels.map((level) => ({ ...level, key })));
 
-/** What the study says as a whole. */
+/** The overall result of the study. */
 function outcome(study) {
   const adaptive = variantsOf(study).filter(({ key }) => key.startsWith("adaptive"));
   const good = { tone: "certified", mark: "\u2713" };
@@ -53,7 +53,7 @@ function ratesText(study) {
   return `${text[0].toUpperCase()}${text.slice(1)}The best slope of degree ${study.p} in ${study.d}D is \u2212${number(study.p / study.d, 2)}.`;
 }
 
-/** Newton steps with and without the criterion, on the levels that both runs have. */
+/** Newton steps with and without the criterion, on the levels common to both runs. */
 function savedSteps(study, key) {
   const rows = study.newton_table.map((row) => [row[key], row[`${key}_converged`]]).filter((pair) => !pair.includes(null));
   const sum = (i) => rows.reduce((steps, pair) => steps + pair[i], 0);

@@ -1,4 +1,5 @@
-// The surface of app/page/page_surface.h as triangles with corners of their own, since stresses jump, and the fields on it.
+// The surface of app/page/page_surface.h as triangles with separate corners, since stresses are discontinuous, and the fields on
+// it.
 
 import { unpackAll } from "./arrays.js";
 import { contactValues } from "./contact_parts.js";
@@ -6,7 +7,7 @@ import { latticeSides, latticeTriangles } from "./lattice.js";
 import { stressFields, stressValues } from "./stress.js";
 import { unit } from "./units.js";
 
-/** Segments of the sides of all faces, each once, and how many faces have it. */
+/** The segments of the sides of all faces, each once, with the number of faces that share it. */
 function uniqueSegments(faces, nFacePoints, k, nVertices) {
   const sides = latticeSides(k);
   const keys = new Float64Array((faces.length / nFacePoints) * 3 * k);
@@ -45,7 +46,7 @@ async function unpackSurface(level) {
   const triangles = latticeTriangles(k);
   const nFacePoints = ((k + 1) * (k + 2)) / 2;
   const nFaces = faces.length / nFacePoints;
-  const lattice = new Uint32Array(nFaces * triangles.length); // per corner: its place in arrays of lattice points
+  const lattice = new Uint32Array(nFaces * triangles.length); // per corner: its index in arrays of lattice points
   for (let face = 0, c = 0; face < nFaces; ++face)
     for (const point of triangles) lattice[c++] = face * nFacePoints + point;
   const vertex = new Uint32Array(lattice.length);
@@ -59,7 +60,7 @@ async function unpackSurface(level) {
   return surface;
 }
 
-/** How many bodies there are, and to which one a vertex belongs; null where there is one body. */
+/** The number of bodies, and the body of each vertex; null if there is one body. */
 function bodiesOf({ body, faces }, nVertices, nFacePoints) {
   if (!body) return { nBodies: 1, vertexBody: null };
   const vertexBody = new Uint32Array(nVertices);
@@ -93,8 +94,8 @@ function largestLength(vectors, dimension) {
 }
 
 /**
- * Positions x + factor u about the centre of the box, 3 numbers per vertex. `layout`: by how much bodies are moved; those that are
- * not shown become a point.
+ * Positions x + factor u about the centre of the box, 3 numbers per vertex. `layout`: the displacements of bodies; bodies that
+ * are not shown collapse to a point.
  */
 export function vertexPositions({ points, displacement, dimension, nVertices, box, vertexBody, lift }, factor, layout) {
   const positions = new Float32Array(3 * nVertices);
@@ -130,7 +131,7 @@ const spread = {
   vertex: ({ vertex }, value) => perCorner(vertex.length, (c) => value(vertex[c])),
 };
 
-/** At lattice points, or where a mesh is large one value per face. */
+/** Stress at lattice points or, where a mesh is large, one value per face. */
 function spreadStress(surface, value) {
   const { stress, out_of_plane: ratios, region, nFaces, nFacePoints } = surface;
   const perFace = stress[0].length === nFaces;
@@ -144,7 +145,7 @@ function perPoint({ points }, value) {
   return Float32Array.from({ length: points.length / 3 }, (_, v) => value(v));
 }
 
-/** The fields of a surface: id, label, unit, group, kind of scale, corners(surface), and inside(volume) where it is known there. */
+/** The fields of a surface: id, label, unit, group, kind of scale, corners(surface), and inside(volume) where known there. */
 export function fieldsOf(surface, components) {
   const d = surface.dimension;
   const axes = ["x", "y", "z"].slice(0, d);
@@ -176,7 +177,7 @@ export function fieldsOf(surface, components) {
   ];
 }
 
-/** A field as a table of the points of the faces: those that share a point may have other values there. `shown`: what has its corners. */
+/** A field as a table of the points of the faces; faces that share a point may have different values there. `shown`: has its corners. */
 export function fieldRows(surface, shown, { id, corners }) {
   const { points, dimension: d, vertex } = shown;
   const rows = new Map();
@@ -213,7 +214,7 @@ function areaQuantile(surface, values, part, high) {
   return last < 0 ? high : Math.exp(bottom + (last + 1) * perBin);
 }
 
-/** The range of colours of a field; stresses are cut off where a singular corner would take all colours. */
+/** The colour range of a field; stresses are cut off where a singular corner would use up all colours. */
 export function colourRange(surface, field, values) {
   let [low, high] = [Infinity, -Infinity];
   let positive = Infinity;

@@ -1,4 +1,4 @@
-// The units that a case names, as labels; without them numbers stand alone. A page shows one case.
+// The units named by a case, as labels; without them numbers have none. A page shows one case.
 
 import { superscript } from "./dom.js";
 
@@ -19,17 +19,17 @@ export function unit(what) {
   return labels?.[what] ? typesetUnit(labels[what]) : "";
 }
 
-/** That of a [[quantity]], by its name. */
+/** The unit of a [[quantity]], by its name. */
 export function quantityUnit(name) {
   return labels?.quantities[name] ? typesetUnit(labels.quantities[name]) : "";
 }
 
-/** A number as text with a unit behind it, if there is one. */
+/** A number as text followed by its unit, if there is one. */
 export function measured(text, label) {
   return label ? `${text} ${label}` : text;
 }
 
-/** "gap [mm]", or "gap" without a unit. `scale`: what powerOfTen() has taken out of the numbers: "gap [10⁻³ mm]". */
+/** "gap [mm]", or "gap" without a unit. `scale`: the factor extracted from the numbers by powerOfTen(): "gap [10⁻³ mm]". */
 export function headed(name, label, scale) {
   const shown = scale ? scale.unit(label).trim() : label;
   return shown ? `${name} [${shown}]` : name;

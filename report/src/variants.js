@@ -1,6 +1,6 @@
 // The variants of a study: names, colours, levels.
 
-// Pairs with and without the stopping criterion nearly coincide: those without are broad, and lie below the others.
+// Pairs with and without the stopping criterion nearly coincide: those without are broad and drawn below the others.
 const looks = {
   adaptive_converged: { name: "adaptive, Newton to the end", colour: "#8fcdf2", strokeWidth: 6, order: 0 },
   uniform_converged: { name: "uniform, Newton to the end", colour: "#f3c065", strokeWidth: 6, order: 0 },
@@ -8,7 +8,7 @@ const looks = {
   uniform: { name: "uniform", colour: "#d55e00", strokeWidth: 1.75, order: 1 },
 };
 
-/** Those of the study, with `relative_error`, of the energy norm of the reference, on the levels. */
+/** The variants of the study, with `relative_error`, relative to the energy norm of the reference, on the levels. */
 export function variantsOf(study) {
   const energy = study.reference?.energy;
   const relative = (error) => (error !== null && energy > 0 ? error / Math.sqrt(energy) : null);
@@ -22,7 +22,7 @@ export function curveOf(variant, key) {
     .map((level) => ({ x: level.dofs, y: level[key], level: level.level })) };
 }
 
-/** The levels with a bound as those of a run. */
+/** The levels with a bound, in the form of those of a run. */
 export function levelsOf({ levels }) {
   return levels.filter(({ relative }) => relative > 0).map((level) => ({ ...level, components: level, bound: level.total_sharp,
     sigma_norm: level.total_sharp / level.relative }));

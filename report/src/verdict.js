@@ -1,4 +1,4 @@
-// What came out of a run, in one sentence and a few figures.
+// The result of a run, in one sentence and a few figures.
 
 import { count, element, number, percent, plural } from "./dom.js";
 import { typeset } from "./math.js";
@@ -45,7 +45,7 @@ function warningItem({ where, text }) {
   return element("li", {}, where ? element("strong", {}, `${where}: `) : null, typeset(text));
 }
 
-/** What deserves a look before the result is used; beside the verdict, on paper too. */
+/** What to check before using the result; next to the verdict, on paper too. */
 function warningBox({ warnings }) {
   if (!warnings || warnings.length === 0) return null;
   return element("div", { class: "verdict verdict-budget warnings", role: "status" },
@@ -59,12 +59,12 @@ export function figure(value, name, note) {
     element("div", { class: "figure-name" }, name), note ? element("div", { class: "figure-note" }, typeset(note)) : null);
 }
 
-/** What the case wants to know, with its error bar. */
+/** The quantities of the case, with their error bars. */
 function quantityFigures({ quantities }) {
   return (quantities ?? []).slice(0, 4).map((quantity) => figure(number(quantity.value, 5), quantity.name, intervalText(quantity)));
 }
 
-/** The smallest factor of safety against sliding that the certificate has. */
+/** The smallest factor of safety against sliding in the certificate. */
 function safetyFigure(run) {
   const parts = Object.entries(run.contact?.boundaries ?? {}).filter(([, { sliding }]) => sliding?.safety_factor > 0);
   if (parts.length === 0) return null;
@@ -76,7 +76,7 @@ function placeText(place) {
   return `at (${place.map((x) => number(x, 4)).join(", ")})`;
 }
 
-/** What the error in the energy norm is the distance from. */
+/** What the error in the energy norm is measured from. */
 const targets = { solution: "from the exact solution", tresca_with_computed_threshold: "for the computed friction threshold" };
 
 /** `contact`: the summary of contact.js, null where the page has no picture of the contact boundary. */
@@ -98,7 +98,7 @@ function figures(run, contact) {
   ].filter(Boolean);
 }
 
-/** What both kinds of page begin with; `verdict`: its title, mark, tone and body. */
+/** The common header of both kinds of page; `verdict`: its title, mark, tone and body. */
 export function pageHeader({ program, machine, title, file, kind, verdict, warnings, figures: shown }) {
   return element("header", {},
     element("p", { class: "brand" }, "Tribound", element("span", {}, ` ${program.version} \u00b7 ${machine.written}`)),
