@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Gives the program bad input and compares what it says with what it should say.
+"""Gives the program bad input and compares its messages with the expected ones.
 
-    bad_inputs.py PROGRAM BAD_INPUTS.toml [ROW ...]        --show prints what the program says instead
+    bad_inputs.py PROGRAM BAD_INPUTS.toml [ROW ...]        with --show it prints the messages instead
 
-BAD_INPUTS.toml describes itself. Every row runs in a directory of its own, which afterwards must hold what it held
-before, and the message on stderr must be the expected one to the letter.
+BAD_INPUTS.toml describes its own format. Every row runs in a directory of its own, which must be unchanged afterwards. The
+message on stderr must match the expected one to the letter.
 """
 
 import argparse
@@ -18,10 +18,10 @@ from pathlib import Path
 
 import runner
 
-TIME_LIMIT = 60  # seconds, of one row
+TIME_LIMIT = 60  # seconds per row
 WORKERS = 2
 
-# Elements of Gmsh: number of the type, dimension.
+# Elements of Gmsh: type number, dimension.
 ELEMENTS = {
     "line": (1, 1),
     "triangle": (2, 2),
@@ -89,17 +89,17 @@ def contents(directory):
 
 
 def run(program, row, directory):
-    """Runs the program in the directory. A limit of the file size stands in for a full disk."""
+    """Runs the program in the directory. A limit on the file size stands in for a full disk."""
     arguments = row.get("arguments", ["run", "case.toml"])
     for assignment in row.get("set", []):
         arguments = [*arguments, "--set", assignment]
     limit = ["prlimit", f"--fsize={row['file_size']}"] if "file_size" in row else []
-    # Python ignores SIGXFSZ: writing too much then fails instead of ending the program.
+    # Python ignores SIGXFSZ, so writing too much fails instead of ending the program.
     return runner.run(*limit, program, *arguments, cwd=directory, timeout=TIME_LIMIT, restore_signals=False)
 
 
 def differences(program, row, table, directory):
-    """Yields what is not as it should be."""
+    """Yields whatever differs from what is expected."""
     write_inputs(row, table, directory)
     before = contents(directory)
     result = run(program, row, directory)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Compares what the program says about its command line with its manual and with what shells complete.
+"""Compares the program's help with its manual and with the completions of shells.
 
     command_line.py PROGRAM MANUAL BASH_COMPLETION ZSH_COMPLETION OUTPUT_PAGE
 
-Every command and every option of --help must be in the manual and in its synopsis, every file of the page docs/output.md in
-its list of files. bash and zsh (where it is installed) are asked what they
-complete: that must be the commands, their options and the case files, and nothing else.
+Every command and every option of --help must be in the manual and in its synopsis. Every file of the page docs/output.md
+must be in its list of files. bash, and zsh where it is installed, must complete the commands, their options and the case
+files, and nothing else.
 """
 
 import os
@@ -34,7 +34,7 @@ def commands(program):
 
 @cache
 def spellings(program, *command):
-    """The options of a command, of each all spellings."""
+    """The options of a command, in all their spellings."""
     text = printed(program, *command, "--help").split("Examples:")[0]
     lines = [line.split("   ")[0] for line in text.splitlines() if line.startswith("  -")]
     return [re.findall(r"(?<![\w-])--?[a-z][a-z-]*", line) for line in lines]
@@ -62,7 +62,7 @@ def synopsis_differences(program, text):
 
 
 def file_differences(text, page):
-    """Files and directories that the tables of the page begin their rows with."""
+    """Files and directories in the first column of the page's tables."""
     for table in re.findall(r"^\| file \| contents \|\n(.*?)\n\n", page.read_text(), re.MULTILINE | re.DOTALL):
         for row in table.splitlines():
             for name in re.findall(r"`([^`]+)`", row.split("|")[1].replace("0001", "NNNN").replace("0002", "NNNN")):
@@ -95,7 +95,7 @@ def manual_differences(program, file, page):
 
 
 def bash_completed(file, directory, lines):
-    """What bash completes at the end of each line, the words being split at single spaces."""
+    """What bash completes at the end of each line; words are split at single spaces."""
     script = (
         f'source "{file}"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tribound; printf "%s\\n" "${{COMPREPLY[@]}}"'
     )
@@ -103,7 +103,7 @@ def bash_completed(file, directory, lines):
 
 
 def zsh_completed(file, directory, lines):
-    """The same of zsh; of a path it tells the last part."""
+    """The same for zsh, which gives only the last part of a path."""
     script = Path(__file__).with_name("zsh_completion.zsh").resolve()
     found = {line: [] for line in lines}
     for match in printed("zsh", "-f", script, file.parent, *lines, directory=directory).splitlines():
@@ -115,7 +115,7 @@ def zsh_completed(file, directory, lines):
 
 
 def expected_completions(program):
-    """The words that belong at the end of a line; -h and -q, which zsh offers too, aside."""
+    """The words that belong at the end of a line, without -h and -q, which zsh offers too."""
     expected = {
         "tribound ": [*commands(program), "--help", "--version"],
         "tribound ver": ["verify"],

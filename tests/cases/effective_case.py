@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A run leaves its case, with every --set, beside its results: named by its hash, and read again to the same numbers.
+"""A run leaves its effective case, with every --set, beside its results. The file is named by its hash and gives the same
+numbers when it is run.
 
     effective_case.py PROGRAM DIRECTORY
 """
@@ -26,14 +27,14 @@ def without_times(file):
 
 
 def numbers(directory):
-    """What a run that is repeated must give again."""
+    """What a repeated run must reproduce."""
     certificate = json.loads((directory / "certificate.json").read_text())
     return (without_times(directory / "convergence.csv"), (directory / "contact.csv").read_bytes(),
             {key: certificate[key] for key in ("bound", "relative", "balance", "contact", "mesh", "assumptions")})
 
 
 def obstacle_from_a_file(program, directory):
-    """Its path leads from wherever the effective case is read; without the file the message names it."""
+    """The effective case finds it from anywhere; when the file is missing, the message names it."""
     (directory / "down").mkdir()
     result = run(program, "run", "-q", "../input/on_triangles.toml", "--set", "output.directory=results", cwd=directory / "down")
     assert result.returncode == 3, result.stderr  # max_levels
@@ -68,7 +69,7 @@ def main():
     again = directory / "elsewhere/again"
     assert numbers(again) == numbers(first)
 
-    # In its own place it is the same file again.
+    # Run in place, it writes the same file again.
     text = case.read_text()
     tribound(program, "run", "out/polygon/case.toml", cwd=directory)
     assert case.read_text() == text and not (first / "case_effective.toml").exists()

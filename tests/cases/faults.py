@@ -20,7 +20,7 @@ import runner
 PROGRAM = str(Path(sys.argv[1]).resolve())
 # With several threads OpenBLAS takes more memory than little_address_space leaves before the program begins.
 ENVIRONMENT = runner.ENVIRONMENT | {"OPENBLAS_NUM_THREADS": "1"}
-TIME_LIMIT = 120  # seconds, of one run
+TIME_LIMIT = 120  # seconds per run
 
 CASE = """
 degree = 2
@@ -40,13 +40,13 @@ max_levels = 2
 [output]
 directory = "out"
 """
-LONG = ["--set", "mesh.box.cells=[300, 150]"]  # some seconds for the first level
+LONG = ["--set", "mesh.box.cells=[300, 150]"]  # the first level takes some seconds
 MANY_LEVELS = ["--set", "adapt.max_levels=60", "--set", "adapt.tolerance=1e-6", "--set", 'output.levels="all"']
-ENDLESS_GEO = "For i In {1:1000000000}\nEndFor\n"  # Gmsh counts
+ENDLESS_GEO = "For i In {1:1000000000}\nEndFor\n"  # keeps Gmsh busy
 
 
 def start(directory, *arguments, **options):
-    """The program, with the signals as a terminal gives them."""
+    """The program, with the signal handling that a terminal gives it."""
     defaults = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": ENVIRONMENT}
     return subprocess.Popen([PROGRAM, *arguments], cwd=directory, **(defaults | options))
 
@@ -65,7 +65,7 @@ def wait_for(condition):
 
 
 def has_ended(process):
-    """Of a folder of /proc. Where nobody waits for orphans, as in a container without init, they stay as zombies."""
+    """From a folder of /proc. Orphans that nobody waits for, as in a container without init, stay as zombies."""
     try:
         return (process / "stat").read_text().rpartition(") ")[2].startswith(("Z", "X"))
     except OSError:
@@ -239,7 +239,7 @@ def quiet(directory):
 
 
 def lines_fit_a_terminal(directory):
-    """Progress, which is there on a terminal only, and the lines of the levels."""
+    """Progress, which only a terminal shows, and the lines of the levels."""
     terminal, end = os.openpty()
     _, output, _ = run(directory, "run", "case.toml", stderr=end)
     os.close(end)

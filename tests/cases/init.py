@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The cases that `tribound init` writes: they pass `check` without a warning and `run` certifies them; nothing is overwritten.
+"""The cases that `tribound init` writes pass `check` without a warning, and `run` certifies them. Nothing is overwritten.
 
     init.py PROGRAM SCRATCH_DIRECTORY
 """
@@ -23,7 +23,7 @@ def names(directory):
 
 
 def differences(program, directory, name, files):
-    """Yields what is not as it should be with one case."""
+    """Yields what is wrong with one case."""
     directory.mkdir(parents=True)
     result = tribound(program, directory, "init", name)
     if result.returncode or names(directory) != files:
@@ -54,7 +54,8 @@ def differences(program, directory, name, files):
 
 
 def to_failure(program, directory):
-    """The dam beyond the level that it bears: with water in the crack until all of the joint is broken; else until all of it opens or slides, then on friction alone."""
+    """The dam beyond the level that it bears. With water in the crack: until the whole joint is broken. Without: until all of
+    it opens or slides, then on friction alone."""
     text = (directory / "dam.toml").read_text()
     slides = ["history.then={ displacement = 'base.x', step = 2e-4, until = 6e-3 }"]
     for crack, peak, more in (("true", 63.6, []), ("false", 66.5, slides)):
@@ -74,7 +75,8 @@ def to_failure(program, directory):
 
 
 def no_safety(certificate):
-    """The dam: sliding gets nearer as the water rises, by statics: weight, uplift with drain and water on the upstream face."""
+    """The dam: the margin against sliding shrinks as the water rises. By statics: weight, uplift with drain, and water on the
+    upstream face."""
     weight, gamma = 9.81e-3 * 2.4 * 50 * 25, 9.81e-3
     for step in certificate["steps"]:
         level, base = step["t"], step["interfaces"]["base"]

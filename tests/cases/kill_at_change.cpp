@@ -1,6 +1,6 @@
 /// @file kill_at_change.cpp
-/// Loaded before the program: kills it (SIGKILL) at the change to the file system that has the number in
-/// KILL_AT_CHANGE, from 1, before that is made. A change gives a file another name, or removes one.
+/// Loaded before the program: kills it (SIGKILL) just before a change to the file system. KILL_AT_CHANGE is
+/// the number of the change, from 1. A change renames or removes a file.
 
 #include <dlfcn.h>
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""A run that is killed before any change to its directory of results leaves nothing that contradicts the certificate there.
+"""A run killed before any change to its directory of results leaves nothing there that contradicts the certificate.
 
     kills.py PROGRAM KILL_AT_CHANGE MPIRUN
 
-KILL_AT_CHANGE is the library of kill_at_change.cpp: of every scenario all places are tried, one after the other, until a run is not killed any more.
+KILL_AT_CHANGE is the library of kill_at_change.cpp. Every scenario is killed at all places, one after the other, until a run
+is no longer killed.
 """
 
 import json
@@ -101,7 +102,7 @@ def number_in(name):
 
 
 def contradictions(out, references):
-    """What the files say that their certificate does not, as sentences; references: directories of runs that were not killed."""
+    """What the files say beyond their certificate, as sentences; references: directories of runs that were not killed."""
     certificate = read_certificate(out)
     if certificate is None:
         return  # nothing is claimed
@@ -151,14 +152,14 @@ def alike(one, other):
 
 
 def same_mesh(reference, certificate, key, number):
-    """Passes over a history have steps of the same numbers: whether the reference has the one of the certificate."""
+    """Whether the reference has the mesh of the certificate: passes over a history number their steps alike."""
     records = [c.get("steps") or c["levels"] for c in (read_certificate(reference), certificate)]
     cells = [{r[key]: r["cells"] for r in found}.get(number) for found in records]
     return cells[0] == cells[1]
 
 
 def scenario(name, case, before, arguments, ranks=1, stride=1):
-    """`before`: runs that have left their results, one after the other; then the one that is killed, with the arguments."""
+    """`before`: runs that leave their results, one after the other. Then the run with the arguments, which is killed."""
     problems = []
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
@@ -202,7 +203,7 @@ def agree(one, other):
 
 
 def a_check_of_the_history_that_is_killed():
-    """The results are there before the check begins, and a restart that has nothing left to do makes up for it."""
+    """The results are there before the check begins; a restart with nothing left to do makes up for a lost check."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "case.toml").write_text(STEPS.replace("[adapt]", "check = true\n[adapt]"))
@@ -237,7 +238,7 @@ def a_shorter_path_leaves_nothing_of_the_old_one():
 
 
 def checkpoints_do_not_grow_with_the_path():
-    """Of a step in the middle and of the last one, on one mesh; and the file of each step is that of the run."""
+    """A step in the middle and the last one, on one mesh; the file of each step is that of the run."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "case.toml").write_text(STEPS.replace("max_levels = 1", "max_levels = 0"))

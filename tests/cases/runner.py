@@ -1,14 +1,14 @@
-"""The program as the tests of whole cases start it."""
+"""Starts the program for the tests of whole cases."""
 
 import os
 import subprocess
 
-TIME_LIMIT = 600  # seconds, of one run on a busy machine
+TIME_LIMIT = 600  # seconds per run on a busy machine
 ENVIRONMENT = os.environ | {"OMPI_MCA_ess_singleton_isolated": "1"}  # MPI does without files
 
 
 def run(program, *arguments, **options):
-    """The program that has ended, with what it has said; `options`: of subprocess.run, in place of these."""
+    """The finished program with its output; `options` of subprocess.run replace these."""
     defaults = {"capture_output": True, "text": True, "timeout": TIME_LIMIT, "env": ENVIRONMENT}
     if "stdout" in options or "stderr" in options:
         defaults |= {"capture_output": False, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
@@ -16,7 +16,7 @@ def run(program, *arguments, **options):
 
 
 def told(name, problems, right, wrong):
-    """Prints what came of a run, and each of its problems; whether there are any."""
+    """Prints the outcome of a run and each of its problems; returns whether there are any."""
     problems = list(problems)
     print(f"{name}: {wrong if problems else right}")
     for problem in problems:
@@ -25,5 +25,5 @@ def told(name, problems, right, wrong):
 
 
 def words(text):
-    """The text with single spaces, whatever lines it was broken into."""
+    """The text with single spaces, however it was wrapped."""
     return " ".join(text.split())

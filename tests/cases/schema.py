@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Holds cases against the JSON Schema that `tribound schema` prints, by the validator ajv.
+"""Checks cases against the JSON Schema that `tribound schema` prints, with the validator ajv.
 
     schema.py PROGRAM SOURCES PACKAGE
 
-Every case of the examples, the tests, the templates and the guide is valid, and so are random ones. Of BAD_INPUTS.toml those rows
-are not valid that say `schema = true`, and no others. PACKAGE is a folder with ajv; without it the test is skipped (exit code 77).
+Every case of the examples, the tests, the templates and the guide is valid, and so are random ones. The rows of
+BAD_INPUTS.toml that say `schema = true` are invalid, and no others. PACKAGE is a folder with ajv; without it the test is
+skipped (exit code 77).
 """
 
 import json
@@ -22,7 +23,7 @@ LEAST_BAD = 30
 
 
 def in_files(sources):
-    """The cases that lie about, by name."""
+    """The cases in the source tree, by name."""
     for file in sorted(sources.glob("*/**/*.toml")):
         if "build" in file.parts or "out" in file.parts:
             continue
@@ -32,7 +33,7 @@ def in_files(sources):
 
 
 def in_guide(sources):
-    """The blocks of docs/case-format.md, with a mesh and a material where they have none."""
+    """The blocks of docs/case-format.md, completed by a mesh and a material where these are missing."""
     blocks = (sources / "docs/case-format.md").read_text().split("```toml\n")[1:]
     for number, block in enumerate(blocks, 1):
         case = {"mesh": {"file": "a.msh"}, "material": {"E": 1, "nu": 0}} | tomllib.loads(block.split("```")[0])
@@ -52,7 +53,7 @@ def at_random(sources):
 
 
 def bad(sources):
-    """The rows that are wrong in the case file itself, and whether the schema says so."""
+    """The rows whose case file itself is wrong, and whether the schema says so."""
     table = tomllib.loads((sources / "tests/cases/bad_inputs.toml").read_text())
     for row in table["row"]:
         if row.get("arguments") or row.get("set") or row.get("exit", 1) != 1:
@@ -62,11 +63,11 @@ def bad(sources):
             try:
                 yield row["name"], tomllib.loads((Path(directory) / "case.toml").read_text()), row.get("schema", False)
             except (tomllib.TOMLDecodeError, UnicodeDecodeError):
-                pass  # no TOML
+                pass  # not TOML
 
 
 def verdicts(schema, cases, package):
-    """What is wrong with each case, null where nothing is."""
+    """What is wrong with each case, or null."""
     text = json.dumps({"schema": schema, "documents": cases}, default=str).replace("Infinity", '"inf"').replace("NaN", '"nan"')
     script = Path(__file__).with_name("schema.mjs")
     result = subprocess.run(["node", script, package], input=text, capture_output=True, text=True, timeout=120)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs `tribound study` on small cases and checks that what it writes is whole, consistent and within the guarantee.
+"""Runs `tribound study` on small cases and checks that its output is complete, consistent and within the guarantee.
 
     study_case.py PROGRAM OUTPUT_DIRECTORY
 """
@@ -22,7 +22,7 @@ COLUMNS = (
     "stress_error,dual_norm,effectivity,effectivity_stress,energy_bound,energy_effectivity,intervals_agree,rate_error,rate_bound,t_solve,t_certify,t_level"
 )
 ADAPTIVE = ["newton.stopping=adaptive", "newton.tolerance=1e-10", "adapt.theta=0.6", "adapt.max_levels=12", "study.figures=false"]
-BETWEEN_BODIES = ["mor", "str_mor"]  # columns that follow with pairs
+BETWEEN_BODIES = ["mor", "str_mor"]  # further columns with pairs
 # name, case, overrides, exit code
 STUDIES = [
     ("t2d_p1", "t2d.toml", [*ADAPTIVE, "degree=1", "adapt.tolerance=0.12"], 0),
@@ -35,7 +35,7 @@ STUDIES = [
 
 
 def numbers(row):
-    """A row of study.csv as study.json has it."""
+    """A row of study.csv in the form of study.json."""
     return {name: None if text == "" else float(text) for name, text in row.items() if name != "variant"}
 
 
@@ -69,7 +69,7 @@ def check_tables(directory, study, variants):
 
 
 def check_levels(study):
-    """The guarantee, and what rates and effectivities are made of."""
+    """The guarantee, and how rates and effectivities are computed."""
     for name, variant in study["variants"].items():
         before = None
         for level in variant["levels"]:
@@ -89,7 +89,7 @@ def check_levels(study):
 
 
 def check_files(directory, study):
-    """Whole files, the page where pages are written, and the true error of every cell in those of ParaView."""
+    """Complete files, the page where pages are written, and the true error of every cell in the files for ParaView."""
     assert (directory / "report.html").exists() == (directory / "adaptive" / "report.html").exists(), "report.html"
     leftovers = [
         file
@@ -106,14 +106,14 @@ def check_files(directory, study):
 
 
 def check_words(directory, study):
-    """A variant's own certificate and page give the reason that the study gives."""
+    """A variant's own certificate and page give the same reason as the study."""
     for name in VARIANTS:
         certificate = json.loads((directory / name / "certificate.json").read_text())
         assert certificate["reason"] == study["variants"][name]["reason"], f"{name}: {certificate['reason']}"
 
 
 def check_pairs(directory, study):
-    """Two bodies whose meshes do not match: what is lost between them is bounded and part of the bound, its force known."""
+    """Two bodies whose meshes do not match: what is lost between them is bounded as part of the bound; its force is known."""
     for name, variant in study["variants"].items():
         for level in variant["levels"]:
             assert 0 < level["mor"] < level["total_sharp"] and level["str_mor"] <= level["str"] + level["mor"], f"{name}: {level}"
@@ -145,7 +145,7 @@ def run(program, name, case, overrides, exit_code, directory):
 
 
 def interrupt(program, directory):
-    """Ctrl-C in the midst of the first variant leaves its tables."""
+    """Ctrl-C in the middle of the first variant leaves its tables."""
     overrides = [*ADAPTIVE, "degree=3", "adapt.tolerance=1e-6", "adapt.max_levels=100"]
     with subprocess.Popen([program, *arguments("t2d.toml", overrides, directory)], stdout=subprocess.PIPE, text=True) as process:
         end = time.monotonic() + TIME_LIMIT / 2

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The numerical results of the method on problem T2D: rates of error and bound, what the stopping criterion of Newton's
-method changes, and the values of an independent overkill computation.
+"""Numerical results of the method on problem T2D: rates of error and bound, the effect of the stopping criterion of Newton's
+method, and the values of an independent overkill computation.
 
     study_rates.py PROGRAM OUTPUT_DIRECTORY
 """
@@ -18,7 +18,7 @@ COMMON = [
 ]
 # degree: tolerance, deviation of the adaptive rates from -degree/2
 STUDIES = {1: (0.02, 0.04), 2: (0.002, 0.06), 3: (0.00003, 0.12)}
-# Adaptive P2 and P3 of another program, with the uncertainty of the last digits.
+# Adaptive P2 and P3 results of another program, with the uncertainty of the last digits.
 OVERKILL = {
     "energy": (0.0168043384, 1e-10),
     "contact_normal": (-0.1035195, 4e-7),
@@ -51,7 +51,7 @@ def check(degree, deviation, found):
     steps = [row["adaptive"] for row in found["newton_table"] if row["adaptive"] is not None]
     print(f"p = {degree}: the criterion changes the error by {100 * change:.2g} %, Newton steps {steps}")
     assert change < 0.05, f"p = {degree}: the criterion changes the error by {change}"
-    # The first mesh starts from scratch, from a closed and sticking contact.
+    # The first mesh starts from scratch, with contact closed and sticking.
     assert len(steps) > 10 and max(steps[1:]) <= 6, f"p = {degree}: Newton steps {steps}"
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sweeps a case through the program: grids, tables, exit codes, going on after an interruption.
+"""Runs sweeps of a case: grids, tables, exit codes, continuing after an interruption.
 
     sweep.py PROGRAM DIRECTORY
 """
@@ -66,7 +66,7 @@ def check_grid(program, directory):
         bottom = certificate["contact"]["boundaries"]["bottom"]
         assert float(row["contact_normal"]) == bottom["normal"]
         assert float(row["sliding_factor.bottom"]) == bottom["sliding"]["sliding_factor"]
-        # The roller takes a part of the weight, friction all of the push.
+        # The roller takes part of the weight; friction takes all of the push.
         reaction = next(part for part in certificate["balance"]["rows"] if part["kind"] == "reaction")
         assert float(row["reaction_y.left"]) == reaction["force"][1] and float(row["reaction_x.left"]) == 0
         points = list(csv.DictReader((sweep / row["run"] / "contact.csv").open()))
@@ -80,7 +80,7 @@ def check_exit_codes(program, directory):
     assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["certified", "budget"]
     tribound(program, directory, "case.toml", "newton.max_steps=[1, 50]", "--set", "newton.stopping=tolerance", code=2)
     assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["failed", "certified"]
-    # A boundary that does not exist shows only with the mesh; a key that does not exist at once.
+    # A boundary that does not exist is noticed only with the mesh; a key that does not exist, at once.
     tribound(program, directory, "case.toml", "boundary.lid.traction=[[0, 0], [0, 1]]", code=1)
     assert [row["status"] for row in rows(directory / "out/case/sweep")] == ["bad input", "bad input"]
     shutil.rmtree(directory / "out")
@@ -98,7 +98,7 @@ def check_table(program, directory):
 
 
 def check_resume(program, directory):
-    """Interrupted in the second of three runs, then taken up again."""
+    """Interrupted in the second of three runs, then continued."""
     tolerances = "adapt.tolerance=[0.5, 0.0005, 0.4]"
     sweep = directory / "out/case/sweep"
     with subprocess.Popen([program, "sweep", "case.toml", tolerances], cwd=directory, stdout=subprocess.PIPE, text=True) as process:
@@ -146,7 +146,7 @@ def case_with_mesh_file(directory):
 
 
 def check_mesh_file(program, directory):
-    """An earlier result counts for nothing where the mesh has changed, or has gone."""
+    """An earlier result does not count when the mesh has changed or is gone."""
     case_with_mesh_file(directory)
     arguments = ["mesh.toml", "degree=[1]", "--resume"]
     sweep = directory / "out/mesh/sweep"
@@ -163,7 +163,7 @@ def check_mesh_file(program, directory):
 
 def check_interrupted_before_the_first_level(program, directory):
     case_with_mesh_file(directory)
-    (directory / "box.geo").write_text("For i In {1:1000000000}\nEndFor\n")  # Gmsh counts
+    (directory / "box.geo").write_text("For i In {1:1000000000}\nEndFor\n")  # keeps Gmsh busy
     with subprocess.Popen([program, "sweep", "mesh.toml", "degree=[1]"], cwd=directory, stdout=subprocess.PIPE) as process:
         log = directory / "out/mesh/sweep/0001/log.txt"
         while not log.exists():
@@ -200,7 +200,7 @@ def running_in(directory):
             if opened.readlink().parent == directory:
                 return True
         except OSError:
-            continue  # has ended, or is not ours
+            continue  # it has ended, or is not ours
     return False
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that every example has its picture, its place in the gallery and a line in the guide, and that pictures are small.
+"""Checks that every example has a picture, a section in the gallery and a line in the guide, and that pictures are small.
 
     gallery.py ROOT
 """
@@ -9,7 +9,7 @@ import struct
 import sys
 from pathlib import Path
 
-LARGEST, ALL = 120_000, 2_500_000  # bytes: of a picture, of all
+LARGEST, ALL = 120_000, 2_500_000  # bytes: one picture, all pictures
 NARROWEST = 800  # pixels
 
 

@@ -3,8 +3,8 @@
 
     headers.py ROOT
 
-What it does not reach are parts: of their own folder, of base, or of the program (app). A header that another folder uses
-is public.
+Headers that it does not reach are internal: to their own folder, to base, or to the program (app). A header that another
+folder uses is public.
 """
 
 import re

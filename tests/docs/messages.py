@@ -3,8 +3,8 @@
 
     messages.py ROOT
 
-Every message that tests/cases/bad_inputs.toml expects must be on the page, and every message on the page must stand in
-the sources. On the page a message stands in backquotes in the first column of a table, "..." for what differs.
+Every message that tests/cases/bad_inputs.toml expects must be on the page, and every message on the page must be in the
+sources. On the page a message stands in backquotes in the first column of a table, with "..." for what varies.
 """
 
 import re
@@ -12,7 +12,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-# Worded by libraries, or by the operating system.
+# Worded by libraries or the operating system.
 OF_LIBRARIES = ("... is required", "The following argument was not expected: ...", "--set: 1 required KEY=VALUE ...")
 
 
@@ -24,7 +24,7 @@ def documented(page):
 
 
 def literals(folders):
-    """All string literals of the sources, neighbours joined, as one text."""
+    """All string literals of the sources as one text, adjacent ones joined."""
     texts = []
     for folder in folders:
         for file in sorted([*folder.rglob("*.cpp"), *folder.rglob("*.h")]):
@@ -45,7 +45,7 @@ def main():
     sources = literals([root / "src", root / "app"])
     problems = []
     for row in rows:
-        # What is left out between two fragments may be anything.
+        # Anything may stand between two fragments.
         first = row.get("message", "...".join(row.get("fragments", []))).partition("\n")[0]
         if first and "tribound --help" not in row.get("fragments", []):
             if not any(pattern(message).search(first) for message in messages):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests the comparison of tables by which generated pages are checked (scripts/tables.py).
+"""Tests the comparison of tables that checks generated pages (scripts/tables.py).
 
     tables_test.py ROOT
 """

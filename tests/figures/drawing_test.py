@@ -18,7 +18,7 @@ from result_surface import lattice, outer_facets, surface  # noqa: E402
 
 
 def one_cell(corners, degree):
-    """A cell with the nodes of a Lagrange element of that degree: corners first, the others in any order."""
+    """A cell with the nodes of a Lagrange element of the given degree: corners first, the others in any order."""
     d = len(corners) - 1
     powers = [np.array(p) for p in np.ndindex(*[degree + 1] * (d + 1)) if sum(p) == degree]
     powers.sort(key=lambda p: (-max(p), tuple(-p)))
@@ -67,7 +67,7 @@ class Surfaces(unittest.TestCase):
         ends = skin.points[skin.edges[:, [0, -1]]]
         along_an_axis = np.count_nonzero(ends[:, 0] != ends[:, 1], axis=1) == 1
         np.testing.assert_array_equal(skin.sharp, along_an_axis)
-        self.assertEqual(skin.sharp.sum(), 24)  # each is in two facets
+        self.assertEqual(skin.sharp.sum(), 24)  # each edge is in two facets
 
 
 class Hidden(unittest.TestCase):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes pictures of small results, in 2D and 3D, of several boundaries, over load steps and without contact, and looks at them.
+"""Makes pictures of small results and inspects them: 2D and 3D, several boundaries, load steps, no contact.
 
     picture_test.py PROGRAM SCRIPT DIRECTORY
 """

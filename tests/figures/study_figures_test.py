@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures of small studies, in 2D and 3D, and looks at the files.
+"""Draws the figures of small studies, in 2D and 3D, and inspects the files.
 
     study_figures_test.py PROGRAM SCRIPT DIRECTORY
 
@@ -110,7 +110,7 @@ def make_study(program, directory, text, dimension):
 
 
 def interrupt(directory):
-    """Leaves what a study has before its reference is known, without fields."""
+    """Keeps what a study has before its reference is known, without fields."""
     with (directory / "study.csv").open(newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["variant"] == "adaptive"]
     for row in rows:
@@ -151,7 +151,7 @@ def main():
         draw(script, directory)
         for name, content in before.items():
             assert (directory / "figures" / f"{name}.svg").read_bytes() == content, f"{name}.svg differs when drawn again"
-        # What is drawn as paths stands in comments.
+        # Text drawn as paths is repeated in comments.
         titles = (directory / "figures/contact.svg").read_text()
         assert all(f"<!-- {title} -->" in titles for title in ("stress [MPa]", "length [mm]")) == (dimension == 2)
         print(f"{dimension}D: {len(FIGURES)} figures")

@@ -1,4 +1,4 @@
-"""A case file as the judge understands it: docs/case-format.md. Meshes are known by the places of their groups alone."""
+"""A case file as the judge reads it: docs/case-format.md. Of a mesh only the positions of its groups are known."""
 
 import re
 import tomllib
@@ -14,7 +14,7 @@ NUMBER = r"[-+]?[\d.]+(?:[eE][-+]?\d+)?"
 
 @dataclass
 class Material:
-    """sigma = lam tr(eps) I + 2 mu eps; plane stress: lam is the reduced one."""
+    """sigma = lam tr(eps) I + 2 mu eps; in plane stress lam is the reduced value."""
 
     E: float
     lam: float
@@ -23,7 +23,7 @@ class Material:
 
 @dataclass
 class Condition:
-    """What holds on a named boundary."""
+    """The conditions on a named boundary."""
 
     displacement: list  # per component a Formula or None
     traction: list  # Formulas
@@ -120,7 +120,7 @@ def numbers(text):
 
 
 def geo(text):
-    """Points, straight lines, loops, plane surfaces and their physical groups, with literal numbers."""
+    """Points, straight lines, loops, plane surfaces and their physical groups, all with literal numbers."""
     points = {
         int(tag): [float(x), float(y)]
         for tag, x, y in re.findall(rf"Point\((\d+)\) = {{({NUMBER}), ({NUMBER}), ", text)

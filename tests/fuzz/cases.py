@@ -1,4 +1,4 @@
-"""Trials of valid cases: the program runs, its results are judged."""
+"""Trials of valid cases: the program runs, and its results are judged."""
 
 import re
 
@@ -7,12 +7,12 @@ from program import misbehaviour, run
 from random_cases import random_case
 from results import Unreadable, read_json
 
-# A random case may have no solution, or contradict itself; the program then says one of these.
+# A random case may have no solution or contradict itself; the program then gives one of these messages.
 REFUSALS = {
     "not held": r"nothing stops the body|contact cannot hold the body",
     "contradiction": r"prescribes",
 }
-# Failures that promise nothing are counted by their reasons, not reported.
+# Failures without a claimed bound are counted by reason, not reported.
 FAILURES = {
     "newton": r"was the last of newton|no step length|singular",
     "identity": r"identity of the equilibrated stress",
@@ -38,7 +38,7 @@ def trial(number, directory, program):
 
 
 def outcome(directory, code):
-    """A word for the summary."""
+    """One word for the summary."""
     if code != 2:
         return {0: "certified", 3: "limit reached"}[code]
     try:

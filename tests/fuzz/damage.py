@@ -43,7 +43,7 @@ def replaced_match(dice, data, pattern, replacement):
 
 
 def number(dice, data):
-    """Another number, or something that is none. No mesh size of a .geo that would fill the disk."""
+    """Another number, or something that is not a number. No mesh size in a .geo that would fill the disk."""
     small = [b"1e-320", b"5e-324"]
     extremes = [e.encode() for e in EXTREMES if e.encode() not in small or b"Point(" not in data]
     return replaced_match(dice, data, NUMBER, lambda m: dice.one_of(extremes))
@@ -74,7 +74,7 @@ def flipped(dice, data):
 
 
 def word(dice, data):
-    """A 4 or 8 byte number of a binary file."""
+    """A 4 or 8 byte number in a binary file."""
     at = somewhere(dice, data)
     new = dice.one_of(
         [struct.pack("<i", n) for n in (-1, 0, 1, 2**31 - 1, -(2**31))]

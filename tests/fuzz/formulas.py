@@ -1,7 +1,7 @@
 """The formulas of case files, evaluated independently of the program: docs/case-format.md, "Formulas".
 
-A Formula is evaluated on arrays of points; `kinks` are functions on whose zero sets it may have kinks or jumps, for rules
-that are cut there.
+A Formula is evaluated on arrays of points. It may have kinks or jumps on the zero sets of the functions `kinks`; quadrature
+rules are cut there.
 """
 
 import re
@@ -12,7 +12,7 @@ import numpy as np
 TOKEN = re.compile(r"\s*(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[A-Za-z_]\w*|<=|>=|==|!=|&&|\|\||[-+*/^<>?:(),])")
 
 FUNCTIONS = {
-    "rint": lambda x: np.floor(x + 0.5),  # as muParser; np.rint takes halves to the even number
+    "rint": lambda x: np.floor(x + 0.5),  # as muParser; np.rint rounds halves to even
     "sqrt": np.sqrt,
     "exp": np.exp,
     "ln": np.log,
@@ -45,7 +45,7 @@ COMPARISONS = {
 
 @dataclass
 class Formula:
-    """points x d -> values. A number is a formula, too."""
+    """points x d -> values. A number is also a formula."""
 
     value: object  # function of the columns of the points
     is_constant: bool = True
@@ -58,7 +58,7 @@ class Formula:
 
 
 def formula(datum):
-    """Of a number or of a text."""
+    """From a number or a text."""
     return Parser(datum).formula() if isinstance(datum, str) else Formula(lambda x: float(datum))
 
 

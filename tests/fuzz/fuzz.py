@@ -3,8 +3,8 @@
 
     fuzz.py PROGRAM SECONDS [--kind KIND ...] [--seed N] [--count N] [--jobs N] [--keep DIRECTORY]
 
-A trial is its kind and its number; the same number is the same trial. Whatever is found is kept in DIRECTORY/KIND-NUMBER with the
-inputs, and `--kind KIND --seed NUMBER --count 1` repeats it. Exit code 1 when anything was found.
+A trial is determined by its kind and its number. Every finding is kept in DIRECTORY/KIND-NUMBER with its inputs, and
+`--kind KIND --seed NUMBER --count 1` repeats it. Exit code 1 when anything was found.
 """
 
 import argparse
@@ -34,7 +34,7 @@ SHARES = {"cases": 6, "inputs": 12, "kills": 1}  # trials of each kind in turn
 
 @dataclass
 class Trial:
-    """What a trial reports: outcome is a word for the summary."""
+    """What a trial reports; outcome is one word for the summary."""
 
     kind: str
     number: int
@@ -53,7 +53,7 @@ def attempt(kind, number, program, keep):
         directory.mkdir()
         try:
             outcome, findings, numbers = TRIALS[kind](number, directory, program)
-        except Exception:  # a mistake of the fuzzer is a finding, too
+        except Exception:  # an error in the fuzzer is also a finding
             outcome, findings, numbers = "fuzzer failed", [f"FUZZER: {traceback.format_exc()}"], {}
         if findings:
             place = Path(keep) / f"{kind}-{number}"
@@ -65,7 +65,7 @@ def attempt(kind, number, program, keep):
 
 
 def plan(kinds, seed, count):
-    """Kind and number of the trials in order."""
+    """Kind and number of each trial, in order."""
     turn = [kind for kind in kinds for _ in range(SHARES[kind])]
     numbers = dict.fromkeys(kinds, seed)
     made = 0
@@ -77,7 +77,7 @@ def plan(kinds, seed, count):
 
 
 def trials(options, program):
-    """Runs the plan until time or count is used up; yields Trials."""
+    """Runs the plan until the time or the count is used up; yields Trials."""
     deadline = time.monotonic() + options.seconds if options.seconds else float("inf")
     todo = plan(options.kind or list(TRIALS), options.seed, options.count)
     with ProcessPoolExecutor(options.jobs) as workers:

@@ -1,4 +1,4 @@
-"""Trials of damaged inputs: the program says what is wrong, or computes something that can be judged; no crash, no hang."""
+"""Trials of damaged inputs: the program says what is wrong or computes something that can be judged; no crash, no hang."""
 
 import json
 import re
@@ -9,7 +9,7 @@ from program import misbehaviour, run
 from random_cases import Dice, random_case
 
 TIME_LIMIT = 20  # seconds
-MOST_DOFS = 3000  # of cases that are run
+MOST_DOFS = 3000  # larger cases are not run
 
 
 def trial(number, directory, program):
@@ -40,7 +40,7 @@ def trial(number, directory, program):
 
 
 def run_accepted(case, directory, program):
-    """What check accepts is run on its first mesh."""
+    """A case that check accepts is run on its first mesh."""
     options = ["--set", "adapt.max_levels=0", "--set", "output.report=false", "--set", 'output.directory="out"']
     result = run(program, ["run", case.name, *options], directory, TIME_LIMIT)
     findings = misbehaviour(result, TIME_LIMIT)
@@ -52,6 +52,6 @@ def run_accepted(case, directory, program):
         verdict = judge(case, directory / "out", result.code)
     except Exception:  # the judge reads the formats of the random cases only
         return "run, not judged", [], {}
-    # What the damage has left may mean something else to the judge; a violated bound is for people to look at.
+    # The judge may read a damaged case differently; a violated bound is left to people to inspect.
     serious = [text for text in verdict.findings if re.search("^VIOLATION|exit code|unreadable", text)]
     return "run and judged", serious, {"effectivities": verdict.effectivities, "n_bounds": verdict.n_bounds}

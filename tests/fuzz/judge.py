@@ -1,6 +1,6 @@
-"""Judges a run from the files it has left and from the case, with nothing of the program: every finding is a sentence.
+"""Judges a run from its files and the case alone, without any code of the program. Every finding is a sentence.
 
-VIOLATION: the residual of the displacement in the file is larger than the bound that is claimed for it.
+VIOLATION: the residual of the displacement in the file exceeds the bound claimed for it.
 INCONSISTENT: files, exit code or numbers contradict each other, the case, or the documentation.
 """
 
@@ -22,7 +22,7 @@ COMPONENTS = ["osc", "str", "neu", "lin1", "cnt", "frc", "lin2n", "lin2t", "quad
 
 
 def judge(case_file, directory, exit_code, killed=False):
-    """The Verdict on the results in the directory; in those of a killed run the fields of the last level may be missing."""
+    """The Verdict on the results in the directory. After a kill the fields of the last level may be missing."""
     verdict = Verdict()
     if not Path(directory).is_dir():
         verdict.check(False, f"exit code {exit_code} without results")
@@ -66,7 +66,8 @@ def judge_files(verdict, case, results, exit_code, killed):
 
 
 def keep_what_is_claimed(verdict, results):
-    """Of the tables only the rows of levels in the certificate, which follows them; fields follow it, and there are no others."""
+    """Keeps the rows of levels in the certificate, which is written after the tables. The fields are written after it; there
+    must be none of other levels."""
     n = len(results.certificate["levels"])
     results.convergence = [row for row in results.convergence or [] if row["level"] < n]
     results.newton = [row for row in results.newton or [] if row["level"] < n]
@@ -90,7 +91,7 @@ def judge_arithmetic(verdict, certificate):
     verdict.check(consistent, f"bound {bound}, sigma_norm {sigma}: {status!r}")
     if certificate["relative"] is not None and sigma > 0:
         verdict.check(near(certificate["relative"], bound / sigma), "relative is not bound / sigma_norm")
-    # Stresses of degree 1 are symmetric up to a term of the size of the error: nothing is asked of them.
+    # Stresses of degree 1 are symmetric only up to a term of the size of the error: their symmetry is not checked.
     if certificate["identities"] is None:
         judge_zero_stress(verdict, certificate)
         return
@@ -104,7 +105,7 @@ def judge_arithmetic(verdict, certificate):
 
 
 def judge_zero_stress(verdict, certificate):
-    """Where all is rounding the certificate says so; whether it is, the residual tells."""
+    """Where everything is rounding, the certificate says so; the residual tells whether that is true."""
     verdict.check("stress" in certificate["assumptions"], "no identities, and nothing is said of a stress of zero")
     verdict.check(certificate["sigma_norm"] == 0 and certificate["relative"] is None, "no identities, but a stress")
 
@@ -143,12 +144,12 @@ def judge_tables(verdict, results):
 
 
 def judge_levels(verdict, case, results, killed):
-    """Every level of which there is a bound and a displacement."""
+    """Every level that has a bound and a displacement."""
     certificate = results.certificate
     names = [region["name"] for region in certificate["mesh"]["regions"]]
     bounds = [level for level in certificate["levels"] if level["bound"] is not None]
     if killed and len(results.levels) == len(bounds) - 1:
-        bounds.pop()  # the certificate is there before the fields
+        bounds.pop()  # the certificate is written before the fields
     if not results.levels:
         verdict.check(killed or case.get("output.vtu", True) is False, "no level_NNN.vtu")
         return

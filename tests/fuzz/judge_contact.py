@@ -6,8 +6,8 @@ from residual import dot
 from simplices import bernstein, lattice
 from verdict import near
 
-SHARE = 10.0  # of the distance of gap and threshold from polynomials: what they may differ by in contact.csv
-SAMPLES = {2: 512, 3: 160}  # per edge of a facet: narrow strips must be seen
+SHARE = 10.0  # deviation allowed in contact.csv, as a multiple of the distance of gap and threshold from polynomials
+SAMPLES = {2: 512, 3: 160}  # per edge of a facet; narrow strips must be seen
 
 
 def judge_contact(verdict, residual, results):
@@ -49,7 +49,7 @@ def judge_points(verdict, residual, name, rows):
     on_facet[rowwise, facets.opposite[owners]] = 0  # a formula may switch at the plane of the facet
     state = residual.contact_state(name, owners, on_facet)
     gamma = residual.penalties(name)[owners]
-    # Where nothing happens, u is rounding of nothing.
+    # Where nothing happens, u is pure rounding.
     length = np.abs(level.nodal).max() + np.abs(state["gap"]).max() + 1e-13 * level.size
     stress = residual.materials.max() * length / facets.sizes.min() + (gamma * length).max()
     gap_error, error, limit_error = representation_errors(residual, name)
@@ -69,7 +69,7 @@ def judge_points(verdict, residual, name, rows):
 
 
 def representation_errors(residual, name):
-    """What polynomials in the place of gap and threshold may change: of the gap, of the pressure, of the limit."""
+    """How much polynomials in place of gap and threshold may change the gap, the pressure and the limit."""
     contact = residual.conditions[name].contact
     gap_error = SHARE * distance_from_polynomials(residual, name, contact["gap"])
     error = residual.penalties(name).max() * gap_error * (1 + contact["coefficient"])
@@ -77,7 +77,7 @@ def representation_errors(residual, name):
 
 
 def distance_from_polynomials(residual, name, formula):
-    """The largest distance of a formula from P^(p+1) on a facet: what the program may put in its place."""
+    """The largest distance of a formula from P^(p+1) on a facet; the program may replace it by such a polynomial."""
     if formula.is_constant:
         return 0.0
     level, facets = residual.level, residual.boundary[name]

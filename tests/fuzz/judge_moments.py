@@ -1,4 +1,4 @@
-"""Judges moments: of contact by contact.csv and the equilibrated stress, of loads by the data of the case, and their balance."""
+"""Judges moments: of contact, by contact.csv and the equilibrated stress; of loads, by the case; and their balance."""
 
 import numpy as np
 
@@ -7,21 +7,21 @@ from residual import Residual
 from simplices import lattice
 
 LEFT_OF_NEWTON = ["lin2n", "lin2t", "reg2n", "reg2t"]
-ROUNDING = 1e-8  # of forces times arms
-DATA = 1e-5  # the same, where formulas are integrated by other rules
-FINER = 2  # rules for those that are far off
-SOLVER = 1e-6  # the same, of the remainder of linear solvers
+ROUNDING = 1e-8  # relative to forces times arms
+DATA = 1e-5  # the same, where formulas are integrated with other rules
+FINER = 2  # fineness of the rules for loads that are far off
+SOLVER = 1e-6  # the same, for the remainder of linear solvers
 
 
 def cross(arms, forces):
-    """arm x force, row by row; in 2D its one component, positive from x to y."""
+    """arm x force, row by row; in 2D its only component, positive from x to y."""
     if arms.shape[1] == 3:
         return np.cross(arms, forces)
     return (arms[:, 0] * forces[:, 1] - arms[:, 1] * forces[:, 0])[:, None]
 
 
 def about_origin(row, about):
-    """The moment about the origin of a row of the balance, whose moments are about another point."""
+    """The moment of a row of the balance, taken about the origin; the balance uses another point."""
     return np.array(row["moment"]) + cross(np.array([about]), np.array([row["force"]]))[0]
 
 
@@ -32,7 +32,7 @@ def resultant(points, forces):
 
 
 def resultant_of_rows(rows):
-    """That of T on a boundary by its rows of contact.csv."""
+    """The resultant of T on a boundary from its rows of contact.csv."""
     axes = [key[-1] for key in rows[0] if key.startswith("traction_")]
     column = lambda prefix: np.array([[float(row[prefix + a]) for a in axes] for row in rows])
     weights = np.array([float(row["weight"]) for row in rows])
@@ -50,7 +50,7 @@ def judge_moments(verdict, residual, results):
 
 
 def judge_contact_moments(verdict, residual, results):
-    """Of each boundary with contact: contact.csv gives the moment of the certificate and, up to what is left of Newton's
+    """On each boundary with contact: contact.csv gives the moment of the certificate and, up to the remainder of Newton's
     method, that of the equilibrated stress."""
     contact, balance = results.certificate["contact"], results.certificate["balance"]
     of_stress = {row["name"]: row for row in balance["rows"] if row["kind"] == "contact"} if balance else {}
@@ -71,8 +71,8 @@ def judge_contact_moments(verdict, residual, results):
 
 
 def allowed_moments(residual, name, certificate, scale):
-    """What moments may differ by: as they are summed up, with polynomials in the place of gap and threshold; and with what
-    t^k - T(u) adds, as |x| <= R and ||t^k - T(u)||_F h_F^(1/2) is summed up in the components."""
+    """How much moments may differ: by summation and by polynomials in place of gap and threshold; and, in addition, by
+    t^k - T(u), since |x| <= R and the components sum up ||t^k - T(u)||_F h_F^(1/2)."""
     facets, level = residual.boundary[name], residual.level
     radius = np.linalg.norm(level.vertices[level.cells[facets.cells]], axis=2).max()
     stress = certificate["sigma_norm"] / np.sqrt(level.volumes.sum())
@@ -107,7 +107,7 @@ def judge_balance(verdict, residual, balance, sigma_norm):
 
 
 def differences(residual, about, rows):
-    """Of force and moment of each load from those of its row: the largest, what rounding is proportional to, and both in words."""
+    """Of force and moment of each load and of its row: the largest difference, the scale of rounding, and both in words."""
     result, least = {}, 1e-8 * sum(np.linalg.norm(row["force"]) for row in rows.values())
     for load, (points, forces) in loads(residual).items():
         force, moment, scale = resultant(points - about, forces)
@@ -121,7 +121,7 @@ def differences(residual, about, rows):
 
 
 def loads(residual):
-    """Points and forces by name and whether it is that of a region: of body forces, of boundaries in the components that are free."""
+    """Points and forces of body forces and, in the free components, of boundaries; by name and whether it names a region."""
     level, result = residual.level, {}
     d = level.dimension
     at = np.einsum("av,cvi->cai", lattice(d + 1, 1), level.vertices[level.cells])  # of linear functions, whose

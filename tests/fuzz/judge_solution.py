@@ -7,14 +7,14 @@ from simplices import bernstein, lattice, rule
 from verdict import near
 
 REGULARISED = ["reg1", "reg2n", "reg2t"]
-ROUNDING = 1e-9  # of the stress: below it a residual is rounding, as identities up to 1e-8 are
+ROUNDING = 1e-9  # relative to the stress: a residual below this is rounding, as identities up to 1e-8 are
 WHOLE = ("quad", "alg")  # of the body, not of its cells
-CLOSE = 0.95  # dual norms above this share of the bound are computed again on finer rules
+CLOSE = 0.95  # dual norms above this share of the bound are computed again with finer rules
 FINER = (2, 3)
 
 
 def judge_cells(verdict, level, entry, number):
-    """eta of the cells against the components of the level."""
+    """eta of the cells, compared with the components of the level."""
     eta = {name[4:]: values for name, values in level.arrays.items() if name.startswith("eta_")}
     verdict.check(entry["cells"] == len(level.cells), f"level {number}: {len(level.cells)} cells in the VTU file")
     for name, x in entry["components"].items():
@@ -78,7 +78,7 @@ def judge_displacement(verdict, residual, entry, number):
 
 
 def judge_residual(verdict, case, residual, entry, number):
-    """The theorem: the dual norm, from below, is at most the bound."""
+    """The theorem: a lower bound of the dual norm is at most the bound."""
     level = residual.level
     q = level.degree + (2 if level.dimension == 2 else 1)
     dual, bound = residual.dual_norm(q), entry["bound"]
@@ -91,14 +91,14 @@ def judge_residual(verdict, case, residual, entry, number):
     if dual > allowed:
         verdict.effectivities.append(bound / dual)
     if case.get("certify.contact_rule", "resolved") == "reference":
-        return  # which does not resolve kinks: the certificate says that it does not cover them
+        return  # this rule does not resolve kinks; the certificate says that it does not cover them
     if dual > bound * (1 + 1e-6) + allowed:
         text = f"level {number}: dual norm {dual:.6g} above the bound {bound:.6g}, effectivity {bound / dual:.4g}"
         verdict.findings.append(f"VIOLATION: {text}")
 
 
 def judge_mesh(verdict, case, residual):
-    """Boundaries and regions have the measures of the geometry."""
+    """Boundaries and regions have the measures that the geometry gives."""
     level = residual.level
     for name, simplices in case.sides.items():
         edges = simplices[:, 1:] - simplices[:, :1]

@@ -1,4 +1,4 @@
-"""Trials of kills: a run over the results of another one is ended at a random moment; whatever is left must be true."""
+"""Trials of kills: a run over the results of another run is killed at a random moment; whatever it leaves must be true."""
 
 import os
 import re
@@ -12,13 +12,13 @@ from program import CRASHED, DUMP, misbehaviour, run, start, tail
 from random_cases import Dice, random_case
 from results import Unreadable, read_json
 
-GRACE = 200  # seconds on the clock, of a busy machine, from the signal to the end: the Newton step in work is finished
+GRACE = 200  # seconds of wall time on a busy machine, from the signal to the end: the current Newton step is finished
 EXIT_OF_STATUS = {"certified": 0, "budget": 3, "failed": 2, "not certified": 2}
 ORDERLY = [0, 2, 3]
 
 
 def trial(number, directory, program):
-    """Two undisturbed runs tell what each would leave; then the second one runs over the first one's results and is killed."""
+    """Two undisturbed runs show what each leaves; then the second runs over the results of the first and is killed."""
     dice = Dice([number, 2])
     old, new = longer_cases(dice, number, directory)
     runs = []
@@ -42,7 +42,7 @@ def trial(number, directory, program):
 
 
 def longer_cases(dice, number, directory):
-    """A case of some levels, and the same with other stiffness: its results cannot be taken for the first one's."""
+    """A case of some levels, and the same with another stiffness, so that their results cannot be confused."""
     for seed in range(1000 * number, 1000 * number + 1000):
         text = random_case(seed, directory / "made").read_text()
         if re.search(r"box = { lower = \[[^,]*,[^,]*\]", text) and "contact" in text:
@@ -57,7 +57,7 @@ def longer_cases(dice, number, directory):
 
 
 def killed(program, case, directory, number, delay, writing):
-    """Exit code and stderr; the delay begins with the program, or with the first file it writes."""
+    """Exit code and stderr; the delay starts with the program or with the first file it writes."""
     with start(program, ["run", case.name], directory) as process:
         before = names(directory / "out")
         while writing and process.poll() is None and names(directory / "out") == before:
@@ -79,7 +79,8 @@ def names(directory):
 
 
 def what_is_left(directory, new):
-    """The results of the old run untouched, or those of the new one that the certificate claims, and no others, or no certificate."""
+    """Findings unless the old results are untouched, or there are exactly the new ones that the certificate claims, or there
+    is no certificate."""
     out = directory / "out"
     try:
         certificate = read_json(out / "certificate.json") if (out / "certificate.json").exists() else None
@@ -119,7 +120,7 @@ def orderly_end(directory, number, code, err):
 
 
 def next_run(directory, program, case, expected):
-    """Nothing that was left stands in the way of the next run, or stays in its results."""
+    """Nothing that was left hinders the next run or stays in its results."""
     result = run(program, ["run", case.name], directory)
     findings = misbehaviour(result)
     if not findings and result.code != expected:

@@ -1,4 +1,4 @@
-"""A level of a run, from its VTU file: mesh, displacement, and which boundary facets belong to which group of the case."""
+"""A level of a run, from its VTU file: mesh, displacement, and the group of the case that each boundary facet belongs to."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from simplices import bernstein, bernstein_gradients, lattice
 
-SAME_POINT = 1e-10  # of the size of the body
+SAME_POINT = 1e-10  # relative to the size of the body
 
 
 class Inconsistent(Exception):
@@ -18,7 +18,7 @@ class Inconsistent(Exception):
 
 @dataclass
 class Facets:
-    """Facets of one boundary group; `opposite` is the vertex of the cell that is not on the facet."""
+    """Facets of one boundary group; `opposite` is the cell's vertex opposite the facet."""
 
     cells: np.ndarray
     opposite: np.ndarray
@@ -30,7 +30,7 @@ class Facets:
         return len(self.cells)
 
     def in_cell(self, numbers, points):
-        """Barycentric points of the cells from those of the facets."""
+        """Barycentric points of cells from barycentric points of facets."""
         result = np.zeros((len(points), points.shape[1] + 1))
         for local in range(points.shape[1] + 1):
             here = self.opposite[numbers] == local
@@ -39,7 +39,7 @@ class Facets:
 
 
 class Level:
-    """Vertices of each cell ascend, so that neighbours see shared entities alike."""
+    """The vertices of each cell are in ascending order, so neighbours see shared entities alike."""
 
     def __init__(self, grid, case):
         self.dimension = d = grid.dimension
@@ -65,7 +65,7 @@ class Level:
         self.nodal = displacement
 
     def bernstein_coefficients(self, points, displacement):
-        """Of u, in the order of lattice(), whatever the order of the nodes in the file."""
+        """The coefficients of u in the order of lattice(), whatever the order of the nodes in the file."""
         d, p = self.dimension, self.degree
         from_first = points - self.vertices[self.cells[:, :1]]
         barycentric = np.einsum("cnj,cvj->cnv", from_first, self.gradients)
@@ -82,8 +82,8 @@ class Level:
         return np.einsum("ab,cbi->cai", np.linalg.inv(bernstein(lattice(d + 1, p) / p, p)), nodal)
 
     def places(self, cells, points):
-        """Cartesian coordinates of barycentric points, one per cell number; one that all vertices of a facet share is
-        that of its points to the last bit."""
+        """Cartesian coordinates of barycentric points, one per cell number. A coordinate that all vertices of a facet share is
+        reproduced at its points to the last bit."""
         vertices = self.vertices[self.cells[cells]]
         nearest = vertices[np.arange(len(points)), points.argmax(axis=1)]
         return nearest + np.einsum("pv,pvi->pi", points, vertices - nearest[:, None, :])
@@ -105,8 +105,8 @@ class Level:
         )
 
     def node_keys(self, degree):
-        """Numbers of the nodes of continuous P^degree: cells x functions."""
-        # A node is the sum of its vertices, weighted by alpha; random 64-bit weights tell the sums apart.
+        """Node numbers of continuous P^degree: cells x functions."""
+        # A node is the sum of its vertices weighted by alpha; random 64-bit weights tell the sums apart.
         weights = np.random.default_rng(1).integers(1, 2**63, len(self.vertices), dtype=np.uint64)
         alpha = lattice(self.dimension + 1, degree).astype(np.uint64)
         with np.errstate(over="ignore"):
@@ -146,14 +146,14 @@ class Level:
 
 
 def merged(points, tolerance):
-    """Numbers of the distinct points."""
+    """Numbers points so that coinciding ones share a number."""
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs)), pairs.T), (len(points), len(points)))
     return connected_components(graph, directed=False)[1]
 
 
 def contained(points, simplices, tolerance):
-    """Whether points lie in one of the simplices, of one dimension less than space."""
+    """Whether points lie in one of the simplices, whose dimension is one less than that of space."""
     origin = simplices[:, 0]
     edges = simplices[:, 1:] - origin[:, None]  # simplex x edge x d
     inverse = np.linalg.pinv(edges)  # simplex x d x edge

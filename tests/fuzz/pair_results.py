@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What a run in 3D says of contact between bodies, from its other files: gaps and slips from u on the cells, sums from the points.
+"""Checks contact between bodies in 3D results by other files: gaps and slips by u on the cells, sums by the points.
 
     pair_results.py PROGRAM DIRECTORY
 
-Three blocks on an obstacle, degree 1, meshes that do not match: a pair with friction across a distance, a tied one, an obstacle.
+Three blocks on an obstacle, degree 1, non-matching meshes: a pair with friction across a gap, a tied pair, an obstacle.
 """
 
 import csv
@@ -46,12 +46,12 @@ friction = "tied"
 [adapt]
 max_levels = 1
 """
-# slave: z of its plane, normal, region, what lies opposite: z and region; "upper", "middle", "lower" are 0, 1, 2
+# slave: z of its plane, normal, region, then z and region of the opposite side; "upper", "middle", "lower" are 0, 1, 2
 SIDES = {"upper.back": (DISTANCE, -1, 0, 0.0, 1), "lower.front": (-0.5, 1, 2, -0.5, 1), "lower.back": (-1.0, -1, 2, None, None)}
 
 
 def trace(grid, region, z):
-    """u in a plane z that is a side of a region: a function of the points of that plane."""
+    """u on a side of a region in a plane of constant z, as a function of the points of that plane."""
     corners = np.argwhere((grid.arrays["region"] == region)[:, None] & (np.abs(grid.points[:, :, 2] - z) < 1e-12))
     cells = [c for c in np.unique(corners[:, 0]) if np.sum(corners[:, 0] == c) == 3]
     faces = [corners[corners[:, 0] == c, 1] for c in cells]
@@ -83,8 +83,8 @@ def check_points(grid, name, points):
 
 
 def check_balance(certificate):
-    """Moments of T(u_h) on both sides against those of the equilibrated stress, which other code integrates; and those on the
-    two bodies that nothing but contact holds, where T(u_h) is in equilibrium."""
+    """Moments of T(u_h) on both sides against those of the equilibrated stress, which other code integrates. Also on the two
+    bodies held by contact alone, where T(u_h) is in equilibrium."""
     balance = {row["name"]: row for row in certificate["balance"]["rows"] if row["kind"] == "contact"}
     on_body = {"middle": np.zeros(3), "lower": np.zeros(3)}
     size = 0

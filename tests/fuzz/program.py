@@ -1,4 +1,4 @@
-"""Starts the program as a user would, with limits, and says what no exit code excuses."""
+"""Starts the program as a user would, with limits, and reports what is wrong whatever the exit code."""
 
 import os
 import re
@@ -8,20 +8,20 @@ import subprocess
 import time
 from dataclasses import dataclass
 
-TIME_LIMIT = 60  # seconds of CPU; PATIENCE times as many on the clock, on a machine with other work
+TIME_LIMIT = 60  # seconds of CPU time; the limit of wall time is PATIENCE times as long, as the machine may be busy
 PATIENCE = 10
 MEMORY = 8 << 30  # bytes; protects the machine
 SINGLE = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1"}
 ENVIRONMENT = os.environ | SINGLE | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-# What the libraries below say when they end a program.
+# What the underlying libraries print when they end a program.
 DUMP = re.compile(
     r"PETSC ERROR|MPI_Abort|terminate called|what\(\):|Assertion .* failed|Sanitizer|malloc|stack smashing"
-    r"|(?<!signal 11 \()Segmentation"  # where Gmsh's process met it, the program says so
+    r"|(?<!signal 11 \()Segmentation"  # the program reports one in Gmsh's process itself
     r"|^\[[\w.-]+:\d+\]",
     re.MULTILINE | re.IGNORECASE,
 )
 
-CRASHED = "tribound: crashed"  # what its own handler of signals says, with exit code 2
+CRASHED = "tribound: crashed"  # printed by its own signal handler, with exit code 2
 
 
 @dataclass
@@ -69,7 +69,7 @@ def run(program, arguments, directory, limit=TIME_LIMIT):
 
 
 def misbehaviour(result, limit=TIME_LIMIT):
-    """Findings that do not depend on what was asked for."""
+    """Findings that do not depend on the command."""
     if result.code is None:
         return [f"HANG: not ended after {limit} s of CPU, or {PATIENCE * limit} s"]
     if result.code not in (0, 1, 2, 3):

@@ -1,4 +1,4 @@
-"""Random valid cases: all laws, degrees, kinds of mesh; data with features that rules may miss; cheap on purpose."""
+"""Random valid cases: all laws, degrees and kinds of mesh; data with features that rules may miss; cheap on purpose."""
 
 import json
 from pathlib import Path
@@ -9,7 +9,7 @@ from random_meshes import random_mesh
 
 
 class Dice:
-    """What the generators draw from."""
+    """The source of randomness of the generators."""
 
     def __init__(self, seed):
         self.rng = np.random.default_rng(seed)
@@ -32,7 +32,7 @@ class Dice:
 
 
 def random_tree(dice, leaves, depth):
-    """An expression that is finite everywhere, of everything that formulas may hold."""
+    """An expression that is finite everywhere, built from everything that formulas may contain."""
     if depth == 0 or dice.chance(0.15):
         return dice.one_of([*leaves, "pi", "e", f"{dice.between(0, 3):.3g}", f"{dice.integer(1, 9)}e-1", ".5"])
     a, b, c = (random_tree(dice, leaves, depth - 1) for _ in range(3))
@@ -48,7 +48,7 @@ def random_tree(dice, leaves, depth):
 
 
 def random_formula(dice, size, lower, upper, positive=False):
-    """A datum of about the given size over the box [lower, upper]: a number, or a formula in quotes."""
+    """A datum of about the given size on the box [lower, upper]: a number or a quoted formula."""
     a = int(dice.rng.integers(len(lower)))
     name, low, width = "xyz"[a], float(lower[a]), float(upper[a] - lower[a])
     s = f"(({name}-({low:.6g}))/{width:.6g})"  # runs from 0 to 1
@@ -80,7 +80,7 @@ def random_formula(dice, size, lower, upper, positive=False):
 
 
 def random_case(seed, directory):
-    """Writes case.toml, with a mesh where it needs one, into the directory; returns the file."""
+    """Writes case.toml into the directory, with a mesh if it needs one; returns the file."""
     dice = Dice(seed)
     directory = Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
@@ -118,7 +118,7 @@ def random_material(dice, mesh):
 
 
 def random_boundaries(dice, mesh):
-    """The first boundary is in contact as a rule, the second holds the body, the others are loaded, held, in contact or free."""
+    """The first boundary is usually in contact, the second holds the body; the others are loaded, held, in contact or free."""
     d = len(mesh.lower)
     length = float(np.ptp([mesh.lower, mesh.upper], axis=0).max())
     strain = dice.power(-5, -2)
@@ -136,7 +136,7 @@ def random_boundaries(dice, mesh):
             entry["coefficient"] = dice.one_of([0, 0.1, 0.3, 0.3, 0.7, 1.5])
         if dice.chance(0.4):
             entry["gap"] = datum(shift * dice.power(-2, 0.5), True)
-            if dice.chance(0.15):  # zero but for rounding along the bottom
+            if dice.chance(0.15):  # zero up to rounding along the bottom
                 entry["gap"] = f"{strain:.3g}*(y-({float(mesh.lower[1])!r}))"
         return {"contact": entry}
 

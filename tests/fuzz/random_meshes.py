@@ -1,4 +1,4 @@
-"""Random small meshes of all kinds that a case can name: boxes, polygons for Gmsh, .msh files of its format 2.2."""
+"""Random small meshes of all kinds that a case can name: boxes, polygons for Gmsh, .msh files of format 2.2."""
 
 from dataclasses import dataclass
 from itertools import permutations
@@ -51,7 +51,7 @@ def box_mesh(dice, d, degree):
 
 
 def polygon_mesh(dice, degree, directory):
-    """A polygon with a flat bottom, star-shaped or convex; a convex one sometimes of two regions, cut between two corners."""
+    """A polygon with a flat bottom, star-shaped or convex. Convex ones are sometimes cut into two regions, corner to corner."""
     n = dice.integer(4, 8)
     size = 1.0 if dice.chance(0.6) else dice.power(-3, 3)
     angles = np.pi * (np.arange(n - 1) + 0.5 * dice.rng.uniform(-0.6, 0.6, n - 1)) / (n - 2)
@@ -86,7 +86,7 @@ def polygon_mesh(dice, degree, directory):
 
 
 def msh_mesh(dice, d, degree, directory):
-    """A box of simplices with moved vertices, sometimes of two layers."""
+    """A box of simplices with moved vertices, sometimes in two layers."""
     lower, upper = extents(dice, d)
     shape = [n + 1 for n in cells_per_side(dice, d, degree)]
     places = np.stack(np.meshgrid(*[np.linspace(0, 1, n) for n in shape], indexing="ij"), axis=-1).reshape(-1, d)
@@ -119,7 +119,7 @@ def msh_mesh(dice, d, degree, directory):
 
 
 def simplices(numbers):
-    """Kuhn's: one per order of the axes in every cube."""
+    """Kuhn's triangulation: one simplex per order of the axes in every cube."""
     d = numbers.ndim
     for corner in np.ndindex(*(n - 1 for n in numbers.shape)):
         for order in permutations(range(d)):

@@ -2,8 +2,8 @@
 
     <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,  ||v||^2 = ||grad v||^2 + sum_F ||v||_F^2 / h_F,  v = 0 where u is prescribed
 
-The supremum is looked for in continuous P^q on the mesh. Data are integrated on parts of cells and facets, cut where
-formulas and the contact law have kinks.
+The supremum is taken over continuous P^q on the mesh. Data are integrated over parts of cells and facets, which are cut
+where formulas and the contact law have kinks.
 """
 
 from functools import cache
@@ -14,11 +14,11 @@ from scipy.sparse.linalg import splu
 
 from simplices import bernstein, bernstein_gradients, bisected, composite, cut, lattice, rule
 
-FACET_DEGREE, CELL_DEGREE = 11, 9  # to which the rules on the parts are exact
+FACET_DEGREE, CELL_DEGREE = 11, 9  # degrees of exactness of the rules on the parts
 
 
 class Residual:
-    """`fineness`: how often cells (and, thrice as often, facets) are halved in every direction for formulas."""
+    """`fineness`: how often cells (and, three times as often, facets) are halved in every direction for formulas."""
 
     def __init__(self, level, case, names, fineness=1):
         self.level, self.case, self.fineness = level, case, fineness
@@ -32,7 +32,7 @@ class Residual:
     # data on parts of facets and cells
 
     def facet_rule(self, facets, formulas, more_cuts=()):
-        """Owner, barycentric point in the cell, weight of the points of a rule on all facets."""
+        """Owner, barycentric point in the cell and weight of each point of a rule on all facets."""
         d = self.level.dimension
         smooth = all(f.is_constant for f in formulas) and not more_cuts
         parts = bisected(d - 1, 0 if smooth else (3 if d == 2 else 1) * self.fineness)
@@ -105,7 +105,7 @@ class Residual:
     # the contact law
 
     def contact_rule(self, name):
-        """Cut where T(u) has kinks: P^n = 0 and |P^t| = S."""
+        """Parts cut where T(u) has kinks: P^n = 0 and |P^t| = S."""
         contact = self.conditions[name].contact
         cuts = [lambda o, b: self.contact_state(name, o, b)["normal"]]
         if contact["friction"] != "none":
@@ -119,7 +119,7 @@ class Residual:
         return self.case.gamma0 * np.minimum(lam + 2 * mu, 34 * mu) / facets.sizes
 
     def contact_state(self, name, owners, points):
-        """P, T and what contact.csv holds, at barycentric points of the cells of the facets."""
+        """P, T and the columns of contact.csv, at barycentric points of the cells of the facets."""
         facets, contact = self.boundary[name], self.conditions[name].contact
         cells, n = facets.cells[owners], facets.normals[owners]
         places = self.level.places(cells, points)
@@ -205,7 +205,7 @@ class Residual:
 
 @cache
 def stiffness_table(dimension, q):
-    """Means of d_v B_a d_w B_b over the cell: v, w, a, b."""
+    """Means of d_v B_a d_w B_b over the cell; indices v, w, a, b."""
     points, weights = rule(dimension, 2 * q - 2)
     table = bernstein_gradients(points, q)
     return np.einsum("q,qav,qbw->vwab", weights, table, table, optimize=True)
@@ -217,7 +217,7 @@ def spread(n, parts):
 
 
 def value(function, places):
-    """Of a function of the columns of the places."""
+    """Values of a function of the columns of the places."""
     with np.errstate(all="ignore"):
         return np.broadcast_to(np.asarray(function(places.T), dtype=float), (len(places),))
 

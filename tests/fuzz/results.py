@@ -15,7 +15,7 @@ ARRAY = re.compile(rb'<DataArray type="(\w+)" Name="(\w+)"(?: NumberOfComponents
 
 
 class Unreadable(Exception):
-    """A file that is not whole, or not of its format."""
+    """A file that is incomplete or not in its format."""
 
 
 @dataclass
@@ -28,7 +28,7 @@ class Grid:
 
 
 def inflate(data, at):
-    """An array of compressed blocks: number, size of a block, of the last one, compressed sizes."""
+    """An array of compressed blocks: number of blocks, size of a block, size of the last one, compressed sizes."""
     n_blocks, size, last = np.frombuffer(data, "<u8", 3, at)
     sizes = np.frombuffer(data, "<u8", n_blocks, at + 24)
     at += 24 + 8 * int(n_blocks)
@@ -83,7 +83,7 @@ def no_constant(file, word):
 
 
 def read_table(file):
-    """Rows as dictionaries of numbers, None where nothing is known; words stay words."""
+    """Rows as dictionaries of numbers, None for empty entries; words stay words."""
     try:
         text = file.read_text()
         if not text.endswith("\n"):
@@ -107,7 +107,7 @@ def number(word):
 
 @dataclass
 class Results:
-    """What a run has left in its directory; absent files are None or missing."""
+    """What a run left in its directory; absent files are None or missing."""
 
     directory: Path
     certificate: dict
@@ -121,7 +121,7 @@ class Results:
 
 
 def read_results(directory):
-    """Reads all, and so finds what is not whole."""
+    """Reads everything, and so notices incomplete files."""
     directory = Path(directory)
 
     def table(name):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The judge finds what is deliberately wrong, and nothing in true results.
+"""The judge finds deliberate errors, and nothing in correct results.
 
     self_test.py PROGRAM DIRECTORY
 """
@@ -67,7 +67,7 @@ def edit_certificate(directory, change):
 
 
 def scale_bounds(directory, factor):
-    """All bounds and components, everywhere alike: only the residual can tell."""
+    """Scales all bounds and components consistently: only the residual can tell."""
 
     def scale(entry):
         for key in ("bound", "bound_plain", "relative"):
@@ -107,7 +107,7 @@ def first_row(directory, name, column, value):
 
 
 def turn_contact(factor):
-    """All moments of contact alike: sums do not tell."""
+    """Scales all moments of contact alike: sums cannot tell."""
 
     def turn(certificate):
         contact = certificate["contact"]
@@ -118,7 +118,7 @@ def turn_contact(factor):
 
 
 def turn_balance(kind, factor):
-    """Moments of the rows of a kind in the balance."""
+    """Scales the moments of the rows of one kind in the balance."""
 
     def turn(certificate):
         for row in certificate["balance"]["rows"]:
@@ -132,7 +132,7 @@ def cut_short(name):
     return lambda directory: (directory / name).write_bytes((directory / name).read_bytes()[:-40])
 
 
-# What is done to true results -> what a finding says.
+# Change to correct results -> text of a finding.
 DECEITS = {
     "bounds of a third": (lambda d: scale_bounds(d, 0.3), "VIOLATION"),
     "bound of the certificate alone": (set_bound(0.3), "bound_plain|relative|level|bound"),
@@ -157,7 +157,7 @@ DECEITS = {
 
 
 def crash_is_found(directory):
-    """A program that ends as app/interrupt.cpp lets it."""
+    """A program that ends the way app/interrupt.cpp ends it."""
     fake = directory / "crashing"
     fake.write_text("#!/bin/sh\necho 'tribound: crashed: an internal error' >&2\nexit 2\n")
     fake.chmod(0o755)

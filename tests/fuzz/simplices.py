@@ -33,7 +33,7 @@ def multinomials(n_vertices, degree):
 
 
 def bernstein_gradients(points, degree):
-    """Derivatives by the barycentric coordinates: points x functions x vertices; d_i B_alpha = degree B_(alpha - e_i)."""
+    """Derivatives in the barycentric coordinates: points x functions x vertices; d_i B_alpha = degree B_(alpha - e_i)."""
     n_vertices = points.shape[1]
     lower = bernstein(points, degree - 1)
     number = {tuple(a): k for k, a in enumerate(lattice(n_vertices, degree - 1).tolist())}
@@ -49,7 +49,7 @@ def bernstein_gradients(points, degree):
 
 @cache
 def rule(k, degree):
-    """Barycentric points and weights (of sum 1) on the k-simplex, Gauss's points under Duffy's map: exact to `degree`."""
+    """Barycentric points and weights (of sum 1) on the k-simplex, Gauss points under Duffy's map; exact up to `degree`."""
     n = (degree + k) // 2 + 1
     x, w = np.polynomial.legendre.leggauss(n)
     x, w = (x + 1) / 2, w / 2
@@ -67,7 +67,7 @@ def rule(k, degree):
 
 @cache
 def bisected(k, levels):
-    """The simplex in 2^(k levels) parts of equal volume: parts x vertices x barycentric."""
+    """The simplex divided into 2^(k levels) parts of equal volume: parts x vertices x barycentric."""
     parts = np.eye(k + 1)[None]
     for _ in range(k * levels):
         parts = halved(parts)
@@ -75,7 +75,7 @@ def bisected(k, levels):
 
 
 def halved(parts):
-    """Every part cut at the middle of its longest edge, lengths in barycentric coordinates."""
+    """Every part cut at the midpoint of its longest edge; lengths are in barycentric coordinates."""
     n = parts.shape[1]
     pairs = np.array([(i, j) for i in range(n) for j in range(i)])
     lengths = np.linalg.norm(parts[:, pairs[:, 0]] - parts[:, pairs[:, 1]], axis=2)
@@ -94,7 +94,7 @@ def split(parts, i, j, t):
 
 
 def cut(owners, parts, level_function):
-    """Parts cut where the function, linear between their vertices, changes sign. level_function(owners, points) -> values."""
+    """Parts cut where the function, taken as linear on each part, changes sign. level_function(owners, points) -> values."""
     n_parts, n = parts.shape[:2]
     values = level_function(np.repeat(owners, n), parts.reshape(n_parts * n, -1)).reshape(n_parts, n)
     values = np.where(np.isfinite(values), values, 0.0)
@@ -118,10 +118,10 @@ def cut(owners, parts, level_function):
 
 
 def composite(owners, parts, degree):
-    """The rule on all parts: owner of each point, barycentric point, weight (share of the owner)."""
+    """The rule on all parts: owner of each point, barycentric point, weight (as a share of the owner)."""
     k = parts.shape[1] - 1
     points, weights = rule(k, degree)
-    # A part's share of its simplex: the determinant of k of its barycentric coordinates, since all rows add up to 1.
+    # A part's share of its simplex is the determinant of its barycentric coordinates, since their rows add up to 1.
     shares = np.abs(np.linalg.det(parts))
     all_points = np.einsum("qv,pvc->pqc", points, parts).reshape(-1, parts.shape[2])
     return np.repeat(owners, len(weights)), all_points, np.outer(shares, weights).ravel()
