@@ -1,4 +1,4 @@
-// The part |x| <= 0.5 of a disc of radius 1 that touches the plane y = 0 in the origin; its arc a polygon of 12 facets.
+// The part |x| <= 0.5 of a disc of radius 1 that touches the plane y = 0 at the origin; its arc is a polygon of 12 facets.
 n = 12; a = Asin(0.5); H = 0.1;
 For i In {0:n}
   t = -a + 2*a*i/n;

@@ -1,4 +1,4 @@
-// A wall with a crack from the left that ends inside, and a joint all the way through, which crosses it not.
+// A wall with a crack from the left that ends inside, and a joint all the way through, which does not cross the crack.
 SetFactory("OpenCASCADE");
 Rectangle(1) = {0, 0, 0, 2, 1};
 Point(11) = {0, 0.3, 0};

@@ -1,4 +1,4 @@
-// The part |x| <= 0.5 of a disc of radius 1 that touches the plane y = 0 in the origin: 12 facets of second order.
+// The part |x| <= 0.5 of a disc of radius 1 that touches the plane y = 0 at the origin: 12 facets of second order.
 n = 12; a = Asin(0.5); H = 0.1;
 Point(1) = {-0.5, 1 - Cos(a), 0, H}; Point(2) = {0.5, 1 - Cos(a), 0, H}; Point(3) = {0, 1, 0, H};
 Point(4) = {0.5, 0.5, 0, H}; Point(5) = {-0.5, 0.5, 0, H};

@@ -1,4 +1,4 @@
-// The part |x| <= 0.5 of a disc of radius 1 on a curved seat of radius 1.5 that touches it in the origin: facets of second order.
+// The part |x| <= 0.5 of a disc of radius 1 on a curved seat of radius 1.5 that touches it at the origin: second-order facets.
 n = 12; a = Asin(0.5); b = Asin(0.6 / 1.5); H = 0.1;
 Point(1) = {-0.5, 1 - Cos(a), 0, H}; Point(2) = {0.5, 1 - Cos(a), 0, H}; Point(3) = {0, 1, 0, H};
 Point(4) = {0.5, 0.5, 0, H}; Point(5) = {-0.5, 0.5, 0, H};

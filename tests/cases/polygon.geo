@@ -1,4 +1,4 @@
-// The lower right quarter of a disc that touches the plane y = 0 in the origin, its surface a polygon: where it may come
+// The lower right quarter of a disc that touches the plane y = 0 at the origin. Its surface is a polygon: where it may come
 // into contact, neighbouring facets meet at an angle of 1.4 degrees.
 
 R = 10;

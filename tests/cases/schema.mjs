@@ -1,5 +1,5 @@
-// node schema.mjs <folder with ajv>: reads { schema, documents } from stdin and prints what is wrong with each document, null
-// where nothing is. Exit code 77: ajv is missing.
+// node schema.mjs <folder with ajv>: reads { schema, documents } from stdin and prints what is wrong with each document, or
+// null. Exit code 77: ajv is missing.
 import { existsSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
@@ -11,5 +11,5 @@ if (!existsSync(`${folder}/node_modules/ajv`)) {
 const Ajv = createRequire(`${folder}/package.json`)("ajv");
 const { schema, documents } = JSON.parse(readFileSync(0, "utf8"));
 const ajv = new Ajv({ allErrors: true, allowUnionTypes: true, strictTypes: false, strictRequired: false });
-const validate = ajv.compile(schema); // throws for a schema that is none
+const validate = ajv.compile(schema); // throws if the schema is invalid
 console.log(JSON.stringify(documents.map((document) => (validate(document) ? null : ajv.errorsText(validate.errors)))));

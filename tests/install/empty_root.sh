@@ -1,6 +1,6 @@
 #!/bin/sh
-# Run by package_test.sh inside an empty root: installs the package there and uses it, first with what it depends on alone,
-# then with what it recommends and a compiler.
+# Run by package_test.sh inside an empty root: installs the package there and uses it, first with its dependencies alone,
+# then with its recommendations and a compiler.
 set -eu
 cd /tmp
 export DEBIAN_FRONTEND=noninteractive

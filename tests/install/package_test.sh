@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the package, looks at it, and uses it in an empty root with the Debian packages of where this machine has its own
-# from. Takes the network, and root's rights or user namespaces.
+# Makes the package, inspects it, and uses it in an empty root with Debian packages from the same archive as those of this
+# machine. Needs the network, and root rights or user namespaces.
 #   package_test.sh SOURCE
 set -euo pipefail
 source=$1

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Uses an installation as its users do, outside of the sources.
+# Uses an installation as its users do, outside the sources.
 #   use_installation.sh program PREFIX SCRATCH                  runs the first of its examples, examines a case with a geometry
 #   use_installation.sh library PREFIX SCRATCH [CMAKE_ARGUMENT...]      builds its C++ examples and runs them
 set -eu

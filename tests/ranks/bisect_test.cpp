@@ -1,5 +1,5 @@
 /// @file bisect_test.cpp
-/// A mesh bisected by several ranks against the same bisected by one, cell by cell and to the bit.
+/// A mesh bisected by several ranks against the same mesh bisected by one, cell by cell and bit by bit.
 
 #include "tribound/mesh/bisect.h"
 
@@ -29,14 +29,14 @@ std::uint64_t hash(const CellName& name, std::uint64_t seed)
   return mesh::mix(mesh::mix(mesh::mix(name.root + seed) ^ name.path[0]) + name.depth);
 }
 
-/// A share of all cells at random, or those at the vertex of the least name, so that closure has to travel.
+/// A random share of all cells, or those at the vertex with the least name, so that closure has to travel.
 enum class Marks
 {
   some,
   at_a_corner
 };
 
-/// Cells on some ranks with what leads from one mesh to the next.
+/// Cells on several ranks, with the operations that lead from one mesh to the next.
 template <int dim>
 class Parts
 {
@@ -64,7 +64,7 @@ class Parts
     owned_ = std::move(finer.cells);
   }
 
-  /// Along the curve, or anywhere: then nearly all edges are shared.
+  /// Moves cells along the curve or anywhere; anywhere makes nearly all edges shared.
   void move(bool along_curve, std::uint64_t round)
   {
     std::vector<int> to;
@@ -105,7 +105,7 @@ class Parts
   std::vector<CellRecord<dim>> owned_;
 };
 
-/// On all ranks and on each alone.
+/// On all ranks together and on each alone.
 template <int dim>
 void expect_same_on_any_number(const MeshData<dim>& data, Marks marks, int n_rounds, int times)
 {
@@ -121,7 +121,7 @@ void expect_same_on_any_number(const MeshData<dim>& data, Marks marks, int n_rou
   }
 }
 
-/// A part that is the whole, against bisect().
+/// A part that is the whole mesh, against bisect().
 template <int dim>
 void expect_as_a_whole(const MeshData<dim>& data, Marks marks, int n_rounds, int times)
 {
@@ -175,7 +175,7 @@ TEST(BisectPart, IsBisectToTheBit)
   }
 }
 
-/// Vertices in one place on both sides of joints and of a contact have other names, and so have the middles
+/// Coinciding vertices on the two sides of a joint or a contact have different names, and so do the midpoints
 /// of their edges.
 TEST(BisectPart, OfBodiesThatTouchAndOfJoints)
 {
@@ -186,8 +186,8 @@ TEST(BisectPart, OfBodiesThatTouchAndOfJoints)
   expect_same(touching_boxes<3>(6), 2);
 }
 
-/// Ranks 0 and 1 forget of the vertex number `which` of those they share that the other has it; false where
-/// they share no more.
+/// Of the vertices that ranks 0 and 1 share, makes both forget that the other has vertex number `which`;
+/// false if they share no such vertex.
 template <int dim>
 bool skip_sharer(mesh::Partition<dim>& partition, Index which)
 {
@@ -206,7 +206,7 @@ bool skip_sharer(mesh::Partition<dim>& partition, Index which)
   return partition.ranks.any(skipped);
 }
 
-/// A bug that loses one sharer of a vertex makes meshes that do not conform, or none that are different.
+/// A bug that loses one sharer of a vertex either makes the mesh non-conforming or changes nothing.
 template <int dim>
 void expect_all_sharers_needed(const MeshData<dim>& data)
 {
@@ -247,7 +247,7 @@ void expect_all_sharers_needed(const MeshData<dim>& data)
     EXPECT_EQ(is_seen, differs) << "vertex " << which;
     n_seen += is_seen ? 1 : 0;
   }
-  if (ranks.size() <= 4)  // with cells of more ranks at every vertex, a third one brings the news
+  if (ranks.size() <= 4)  // with cells of more ranks at a vertex, a third rank passes the news on
   {
     EXPECT_EQ(n_seen > 0, ranks.size() > 1);
   }
@@ -259,7 +259,7 @@ TEST(BisectPart, NeedsAllSharers)
   expect_all_sharers_needed(block<3>({4, 2}, {3, 2, 2}));
 }
 
-/// Too deep on one rank is an error on all.
+/// Bisecting too deep on one rank is an error on all.
 TEST(BisectPart, FailsOnAllRanks)
 {
   const Ranks ranks = Ranks::world();

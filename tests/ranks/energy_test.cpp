@@ -1,6 +1,6 @@
 /// @file energy_test.cpp
-/// Admissible displacements and the energy bound of a body on obstacles, by all ranks together, against those
-/// of the whole.
+/// Admissible displacements and the energy bound of a body on obstacles: all ranks together against the
+/// whole mesh.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ namespace tribound::test
 namespace
 {
 
-/// What admissible_displacements() gives from a wave, by place: of both kinds one after the other.
+/// What admissible_displacements() makes of a wave, by place: both kinds, one after the other.
 template <int dim>
 struct Displacements
 {
@@ -80,7 +80,7 @@ void expect_same(int degree, bool fits)
   EXPECT_EQ(here.is_given, fits);
   EXPECT_EQ(here.has_transition, all.has_transition);
   for (std::size_t i = 0; i < all.numbers.size(); ++i) EXPECT_NEAR(here.numbers[i], all.numbers[i], 1e-14);
-  for (const auto& [place, values] : here.at)  // of own nodes and ghosts
+  for (const auto& [place, values] : here.at)  // own nodes and ghosts
   {
     const std::vector<double>& expected = all.at.at(place);
     ASSERT_EQ(values.size(), expected.size());
@@ -145,7 +145,7 @@ ProblemData<dim> on_obstacles()
   return data;
 }
 
-/// A block pressed on another one, which is free where it is fixed.
+/// A block pressed on another block; each is free where the other is fixed.
 template <int dim>
 ProblemData<dim> on_another()
 {
@@ -153,7 +153,7 @@ ProblemData<dim> on_another()
           .pairs = {pair<dim>("bottom", "top_below", Coulomb(0.3))}};
 }
 
-/// Ends and values of the intervals of a wave, with their sizes for rounding.
+/// Ends and values of the intervals of a wave, with the sizes that rounding is measured by.
 template <int dim>
 std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const ProblemData<dim>& data,
                                              int degree)
@@ -211,7 +211,7 @@ TEST(Quantities, HaveTheIntervalsOfTheWhole)
   for (int degree = 1; degree <= 2; ++degree) expect_same_intervals.template operator()<3>(degree);
 }
 
-/// On meshes that ranks refine, weights are those of the first mesh all the same.
+/// On meshes that ranks refine, the weights are still those of the first mesh.
 TEST(Quantities, OfFinerMeshesHaveTheIntervalsOfTheWhole)
 {
   const Ranks ranks = Ranks::world();
@@ -265,8 +265,8 @@ TEST(EnergyBound, IsThatOfTheWhole)
   }
 }
 
-/// Where the state of contact changes on facets, of a body on obstacles and of two whose facets match or are
-/// made to.
+/// Where the state of contact changes on facets: for a body on obstacles, and for two bodies whose facets
+/// match or are made to match.
 template <int dim>
 void expect_same_where_it_is_finer(const mesh::MeshData<dim>& mesh_data, const ProblemData<dim>& data,
                                    int degree)

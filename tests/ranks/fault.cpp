@@ -1,5 +1,5 @@
 /// @file fault.cpp
-/// A program in which something goes wrong on one rank, as its argument says: what becomes of the others?
+/// A program in which something goes wrong on one rank, as its argument says. What do the others do?
 
 #include <chrono>
 #include <csignal>
@@ -54,7 +54,7 @@ int throw_alone(const Ranks& ranks)
   }
 }
 
-/// Rank 1 fails alone where others would fail with it, and something else would be tried.
+/// Rank 1 fails alone where all ranks are expected to fail together and try something else.
 int fail_alone(const Ranks& ranks)
 {
   try

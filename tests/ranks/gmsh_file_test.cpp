@@ -1,5 +1,5 @@
 /// @file gmsh_file_test.cpp
-/// A mesh that several ranks have, written by the first without its cells.
+/// A mesh shared by several ranks; the first rank writes it without having its cells.
 
 #include "tribound/io/fields/gmsh_file.h"
 
@@ -23,7 +23,7 @@ namespace tribound::test
 namespace
 {
 
-/// In 2D of several batches.
+/// In 2D the cells come in several batches.
 template <int dim>
 mesh::Mesh<dim> whole_mesh()
 {

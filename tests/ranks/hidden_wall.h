@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file hidden_wall.h
-/// Three bodies of which one hides a part of another.
+/// Three bodies, one of which hides part of another.
 
 #include <array>
 #include <utility>
@@ -12,7 +12,7 @@
 namespace tribound::test
 {
 
-/// A block above a plate, and a wall behind that, which the plate hides in part.
+/// A block above a plate, and a wall behind the plate, which hides part of the wall.
 template <int dim>
 [[nodiscard]] std::pair<mesh::MeshData<dim>, ProblemData<dim>> hidden_wall()
 {

@@ -36,7 +36,7 @@ TEST(Loop, OfEveryDegreeIn2D)
   }
 }
 
-/// Loads and gap are no polynomials, so that osc, neu and C_F matter; two materials, a bent boundary.
+/// Loads and gap are not polynomials, so osc, neu and C_F matter. Two materials, a bent boundary.
 ProblemData<2> rough_data()
 {
   ProblemData<2> data = pressed_block<2>(Coulomb(0.3));
@@ -77,7 +77,7 @@ TEST(Loop, In3D)
   }
 }
 
-/// Multigrid is another one on another number of ranks: what agrees is what Newton's method converges to.
+/// Multigrid differs with the number of ranks; only the limits of Newton's method agree.
 TEST(Loop, WithMultigrid)
 {
   for (const int p : {1, 2})
@@ -92,7 +92,7 @@ TEST(Loop, WithMultigrid)
   }
 }
 
-/// Area, means of the stress and squares of the components over cells; what they add up to.
+/// Sums over cells of area, mean stress and squared components.
 template <int dim>
 std::vector<double> sums(const mesh::Mesh<dim>& mesh, const adapt::CertifiedLevel<dim>& level)
 {
@@ -110,7 +110,7 @@ std::vector<double> sums(const mesh::Mesh<dim>& mesh, const adapt::CertifiedLeve
   return result;
 }
 
-/// Of a level with a polynomial for u.
+/// Merges cells of a level on which u is a polynomial.
 template <int dim>
 void expect_merged(const adapt::LevelView<dim>& view, const adapt::Method& method, std::int64_t most)
 {
@@ -144,7 +144,7 @@ void expect_merged(const adapt::LevelView<dim>& view, const adapt::Method& metho
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(merged->level.u[i], u[i], 1e-12);
 }
 
-/// Too many cells to be shown are put together, all of them are at the boundary or in larger ones.
+/// When there are too many cells to show, they are merged: all are at the boundary or in larger cells.
 TEST(Excerpt, OfMergedCells)
 {
   const Ranks ranks = Ranks::world();
@@ -179,7 +179,7 @@ TEST(Excerpt, OfMergedCells)
   check(block<3>({4, 3}, {3, 3, 3}), 2, 0.95);
 }
 
-/// What is wrong on one rank alone is seen at facets between ranks, too.
+/// An error on one rank alone is also seen at facets between ranks.
 TEST(Identities, SeeFacetsBetweenRanks)
 {
   const Ranks ranks = Ranks::world();
@@ -193,7 +193,7 @@ TEST(Identities, SeeFacetsBetweenRanks)
   const auto defects = [&]
   { return certify::check_identities<2>(discrete.form, level.traction, level.stress); };
   EXPECT_LT(defects().largest(2), 1e-10);
-  // A constant stress: no jump inside of a part.
+  // A constant stress: no jump inside a part.
   if (ranks.is_first())
     for (std::size_t c = 0; c < level.estimate.cells.size(); ++c)
     {

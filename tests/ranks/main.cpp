@@ -1,5 +1,5 @@
 /// @file main.cpp
-/// GoogleTest on every rank; those behind the first speak only of failures.
+/// GoogleTest on every rank; ranks other than the first report only failures.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// @file pairs_test.cpp
-/// Bodies that touch, on several ranks against one: adaptive loops, random pairs, joints.
+/// Bodies in contact, on several ranks against one: adaptive loops, random pairs, joints.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(Pairs, OfEveryDegreeAndLawIn2D)
   }
 }
 
-/// What matches stays so, whoever has the other side.
+/// Matching meshes stay matching, whichever rank has the other side.
 TEST(Pairs, OnMeshesThatMatch)
 {
   expect_same<2>(matching_blocks<2>(), pushed<2>(Tresca(0.03), 2), {.degree = 2}, {.max_levels = 5});
@@ -77,7 +77,7 @@ TEST(Pairs, HiddenInPart)
 {
   auto [data, problem] = hidden_wall<2>();
   expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
-  problem.pairs[0].pairing = {.direction = Point<2>(0.1, -1), .reach = 0.9};  // of the wall nothing is left
+  problem.pairs[0].pairing = {.direction = Point<2>(0.1, -1), .reach = 0.9};  // nothing of the wall is left
   expect_same<2>(data, problem, {.degree = 2}, {.max_levels = 1});
   const auto [data_3d, problem_3d] = hidden_wall<3>();
   expect_same<3>(data_3d, problem_3d, {.degree = 1}, {.max_levels = 1});
@@ -103,7 +103,7 @@ TEST(Pairs, RegularisedAndWithMultigrid)
   expect_same<3>(two_blocks<3>(), pushed<3>(Coulomb(0.3), 50), method, {.max_levels = 2}, Compare::solutions);
 }
 
-/// Cells at the boundary alone hang together only here and there: what is shown of them knows their bodies.
+/// Cells at the boundary alone are barely connected; an excerpt of them still knows their bodies.
 TEST(Pairs, ExcerptsKnowTheBodies)
 {
   const Ranks ranks = Ranks::world();

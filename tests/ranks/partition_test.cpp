@@ -1,5 +1,5 @@
 /// @file partition_test.cpp
-/// Meshes shared out between ranks, against what every rank finds by looking at all cells.
+/// Meshes distributed over ranks, against what each rank finds from all cells.
 
 #include "tribound/mesh/partition.h"
 
@@ -31,13 +31,13 @@ using mesh::CellRecord;
 using mesh::MeshData;
 using mesh::VertexName;
 
-/// A rank for each cell, at random, the same everywhere.
+/// A random rank for each cell, the same on all ranks.
 int anywhere(const CellName& name, int round, int n_ranks)
 {
   return static_cast<int>(mesh::mix(mesh::mix(name.root + 1) ^ round) % n_ranks);
 }
 
-/// What every rank has if `rank_of` is where each of `all` is.
+/// What every rank must have if `rank_of` gives the rank of each cell of `all`.
 template <int dim>
 void expect_part(const mesh::MeshPart<dim>& part, const std::vector<CellRecord<dim>>& all,
                  const std::vector<int>& rank_of)
@@ -96,7 +96,7 @@ void expect_part(const mesh::MeshPart<dim>& part, const std::vector<CellRecord<d
                 topology.facet_cells[topology.cell_facets[c][i]][1] >= 0);
 }
 
-/// The part as a mesh: its cells, and of all facets only those on the boundary as boundary.
+/// The part as a mesh: its cells; only facets on the boundary of the whole are boundary facets.
 template <int dim>
 void expect_mesh(const mesh::MeshPart<dim>& part, const MeshData<dim>& whole)
 {
@@ -119,8 +119,8 @@ void expect_mesh(const mesh::MeshPart<dim>& part, const MeshData<dim>& whole)
   for (const auto& [cell, facet, tag] : local.boundary()) EXPECT_EQ(part.cells[cell].tags[facet], tag);
 }
 
-/// The rank that each of `all` goes to along the curve. Tells `own` where its cells go, and checks that they
-/// would go there from the first rank, too.
+/// The rank that each cell of `all` goes to along the curve; `to` gets those of `own`. Checks that the cells
+/// would go to the same ranks from the first rank.
 template <int dim>
 std::vector<int> along_the_curve(const mesh::Partition<dim>& partition,
                                  const std::vector<CellRecord<dim>>& all,
@@ -149,7 +149,7 @@ std::vector<int> along_the_curve(const mesh::Partition<dim>& partition,
   return rank_of;
 }
 
-/// Dealt out at random, then along the curve, then at random again.
+/// Distributed at random, then along the curve, then at random again.
 template <int dim>
 void expect_parts(const MeshData<dim>& data)
 {
@@ -196,7 +196,7 @@ TEST(Partition, TellsVerticesInOnePlaceApart)
   expect_parts(touching_boxes<3>(6));
 }
 
-/// Without one of its ghosts the part does not conform, nor with a boundary between two cells.
+/// The part does not conform without one of its ghosts, nor with a boundary between two cells.
 TEST(Partition, IsVerified)
 {
   const MeshData<2> data = block<2>({8, 4});
@@ -215,7 +215,7 @@ TEST(Partition, IsVerified)
   EXPECT_THROW(mesh::Mesh<2>(mesh::with_ghosts<2>(Ranks(), cube, some), labels), InputError);
 }
 
-/// A bug that loses one ghost, whichever it is, is seen at once.
+/// A bug that loses any one ghost is seen at once.
 template <int dim>
 void expect_all_ghosts_needed(const MeshData<dim>& data)
 {
@@ -289,8 +289,8 @@ std::vector<CellRecord<dim>> own_records(const mesh::Mesh<dim>& mesh)
   return mesh::records_of<dim>(mesh, own);
 }
 
-/// Each rank makes its stretch of the cells of a box or several, which are `data`; the whole, dealt out in
-/// batches, would be the same.
+/// Each rank makes its section of the cells of one or several boxes, whose whole mesh is `data`. Distributing
+/// the whole mesh in batches gives the same cells.
 template <int dim, class Source>
 void expect_same_cells(const Source& box, mesh::MeshData<dim> data)
 {
@@ -348,7 +348,7 @@ TEST(Box, IsMadeByAllRanks)
   expect_same_box<3>({.lower = {0, -1, 3}, .upper = {2.5, 0.7, 4}, .cells = {5, 3, 4}});
 }
 
-/// Bytes of what a rank has of a mesh, as long as they grow with it.
+/// Bytes of a rank's part of a mesh; counts only what grows with the mesh.
 template <int dim>
 double bytes_of(const mesh::Mesh<dim>& mesh)
 {
@@ -364,7 +364,7 @@ double bytes_of(const mesh::Mesh<dim>& mesh)
   return bytes;
 }
 
-/// A share of the cells, and what grows like the surface between the parts.
+/// Each rank has a share of the cells, plus what grows like the surface between the parts.
 TEST(Box, LeavesNoRankTheWhole)
 {
   const Ranks ranks = Ranks::world();

@@ -1,5 +1,5 @@
 /// @file partners_test.cpp
-/// Pairs of bodies whose cells are dealt out at random: what each rank has of them, against the whole.
+/// Pairs of bodies whose cells are distributed at random: what each rank has, against the whole mesh.
 
 #include "tribound/contact/pairing/partners.h"
 
@@ -30,7 +30,7 @@ namespace tribound::test
 namespace
 {
 
-/// A facet by its cell in the first mesh and its vertices there, which all ranks know it by.
+/// A facet by its cell in the first mesh and its vertices there: an identity that all ranks share.
 using FacetKey = std::pair<std::int64_t, std::set<std::uint64_t>>;
 
 template <int dim>
@@ -43,11 +43,11 @@ FacetKey key_of(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
   return key;
 }
 
-/// Of a segment: its centre and the opposite one, measure, gamma, h and gap.
+/// The centre of a segment and the opposite point, measure, gamma, h and gap.
 template <int dim>
 using Facts = std::array<double, 2 * dim + 4>;
 
-/// All segments here, by their facets, in an order that does not depend on numbers.
+/// All segments on this rank, by their facets, in an order independent of numbering.
 template <int dim>
 std::map<std::pair<FacetKey, FacetKey>, std::vector<Facts<dim>>> segments_of(
     const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
@@ -75,8 +75,8 @@ std::map<std::pair<FacetKey, FacetKey>, std::vector<Facts<dim>>> segments_of(
   return result;
 }
 
-/// Each rank has its cells from `rank_of` and must have all segments of every facet whose cell touches one of
-/// its own, as the whole mesh has them.
+/// Cells are distributed at random. Each rank must have, as in the whole mesh, all segments of every facet
+/// whose cell touches one of its own.
 template <int dim>
 void expect_partners(const mesh::MeshData<dim>& data, const ProblemData<dim>& problem_data, unsigned seed)
 {

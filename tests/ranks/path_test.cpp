@@ -1,5 +1,5 @@
 /// @file path_test.cpp
-/// Load paths with interfaces that remember, on several ranks against one.
+/// Load paths with history-dependent interfaces, on several ranks against one.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace tribound::test
 namespace
 {
 
-/// Energy, bound, forces, integrals of damage, slip and what was dissipated, of each step.
+/// Energy, bound, forces and the integrals of damage, slip and dissipation at each step.
 template <int dim>
 std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, int degree,
                            std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr)
@@ -73,8 +73,7 @@ TEST(LoadPath, IsTheSameOnAllRanks)
   expect_same<3>(bonded_laws()[3], 1, false);
 }
 
-/// t, cells, damage, slip, energy, bound and work of each step of a path on meshes that become finer along
-/// it.
+/// t, cells, damage, slip, energy, bound and work at each step of a path whose meshes become finer along it.
 template <int dim>
 std::vector<double> transferred(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, int degree,
                                 std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr)
@@ -123,7 +122,7 @@ TEST(LoadPath, HistoryIsCarriedToTheSameMeshesOnAllRanks)
   expect_the_same_transfer<3>(bonded_laws()[1], 1, false);
 }
 
-/// The tip of a crack, which all ranks find together, and what follows from it.
+/// The tip of a crack, which all ranks find together, and its consequences.
 TEST(LoadPath, CracksUnderWaterAreTheSameOnAllRanks)
 {
   for (const bool pairs : {false, true}) expect_same<2>(bonded_laws()[1], 2, pairs, true);

@@ -1,4 +1,4 @@
-"""Whole runs by several processes against one process, and what happens when something goes wrong.
+"""Whole runs by several processes against one process, and their behaviour when something goes wrong.
 
 Usage: program.py MPIRUN PROGRAM FAULT EXAMPLES CASES DIRECTORY
 """
@@ -73,7 +73,7 @@ def largest(part):
 
 
 def alike(one, other, zero=None):
-    """Whether two parts of certificates agree up to what rounding may do to numbers; what is zero beside moments of 1e5 is rounding of these."""
+    """Whether two parts of certificates agree up to rounding. A zero next to moments of 1e5 is rounding of these."""
     if zero is None:
         zero = max(1e-9, 1e-12 * largest(one))
     if isinstance(one, dict) and isinstance(other, dict):
@@ -121,7 +121,7 @@ def expect_same_steps(name, n, also=()):
     for found, expected in zip(rows, alone):
         scale = max(abs(float(expected["work"])), abs(float(expected["total_sharp"])), float(expected["energy"]))
         for key, value in expected.items():
-            # Points at which neither side presses, or friction is just used up, are told apart by rounding.
+            # Rounding decides the status of points with no pressure or with friction just at its limit.
             if key.startswith("t_") or key in ("opened", "slipping", "newton_steps", *also) or value == found[key]:
                 continue
             expect(f"{name} {n} step {expected['step']} {key}",
@@ -143,7 +143,7 @@ def load_steps_the_same_as_one(name, *arguments):
 
 
 def load_steps_go_on(name, step, *arguments):
-    """From a load step of a run by two that has ended, and of one that was killed, by one to three."""
+    """Restarts by one to three processes from a load step of a run by two, either finished or killed."""
     case = [*arguments, "--set", "output.checkpoint='all'"]
     for n in (1, 2):
         code = run_case(name, n, *case)
@@ -161,13 +161,13 @@ def load_steps_go_on(name, step, *arguments):
         for key in ("levels", "steps"):
             expect(f"{name} on {n}", len(whole[key]) == len(certificate[key]), key)
         before = (out(name, n + 10) / "certificate.json").read_text()
-        again = run(n, PROGRAM, "run", "-q", "--restart", str(out(name, n + 10)))  # there is nothing left to do
+        again = run(n, PROGRAM, "run", "-q", "--restart", str(out(name, n + 10)))  # nothing is left to do
         expect(f"{name} again on {n}", again.returncode == result.returncode, again.returncode, again.stderr)
         expect(f"{name} again on {n}", (out(name, n + 10) / "certificate.json").read_text() == before, "certificate.json")
 
 
 def killed_load_steps_go_on(name, *arguments):
-    """In the middle of a pass after the first: the one before is there until it is complete."""
+    """Killed during a pass after the first: the previous pass stays until the new one is complete."""
     case = [*arguments, "--set", "output.checkpoint='all'"]
     run_case(name, 1, *case)
     out(name, 2).mkdir(parents=True, exist_ok=True)
@@ -221,7 +221,7 @@ def interrupted():
 
 
 def a_run_goes_on():
-    """Written by 3, read by 1, 2 and 4, after a kill in the middle of things."""
+    """Written by 3 processes, read by 1, 2 and 4, after a kill in mid-run."""
     case = [f"{EXAMPLES}/05_dam/case.toml", "--set", "output.checkpoint=true", "--set", "adapt.tolerance=0.002"]
     run_case("whole", 1, *case)
     out("killed", 3).mkdir(parents=True, exist_ok=True)
@@ -254,7 +254,8 @@ def a_run_goes_on():
 
 
 def bodies_go_on():
-    """Joints and several boxes: the interfaces come with the mesh; an obstacle comes from its file again, a shape from the first mesh."""
+    """Joints and several boxes: the interfaces come with the mesh. An obstacle is read from its file again, a shape comes
+    from the first mesh."""
     for name, case in (("blocks", f"{EXAMPLES}/07_three_blocks/case.toml"), ("joint", f"{CASES}/joint.toml"),
                        ("triangles", f"{CASES}/on_triangles.toml"), ("order2", f"{CASES}/order2.toml"),
                        ("order2_pair", f"{CASES}/order2_pair.toml")):

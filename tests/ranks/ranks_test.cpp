@@ -1,5 +1,5 @@
 /// @file ranks_test.cpp
-/// Sums, decisions, data and errors between processes, against what one process computes.
+/// Sums, decisions, data and errors among processes, against what one process computes.
 
 #include "tribound/base/ranks.h"
 
@@ -23,7 +23,7 @@ namespace
 
 using ::testing::HasSubstr;
 
-/// A number of rank r whose sums depend on their order.
+/// A number for rank r; sums of these depend on the order of summation.
 double part(int r)
 {
   return std::sin(1.0 + r) * std::pow(10.0, 7 * (r % 3));
@@ -79,7 +79,7 @@ struct Item
   char kind;
 };
 
-/// Rank r sends r + 2 s items to rank s, none to some.
+/// Rank r sends r + 2 s items to rank s, and none to some ranks.
 TEST(Ranks, EveryItemArrivesOnceAndInOrder)
 {
   const Ranks ranks = Ranks::world();
@@ -118,7 +118,7 @@ TEST(Ranks, GatheredOnTheFirstAndCopiedFromIt)
   EXPECT_EQ(std::string(text.begin(), text.end()), "case");
 }
 
-/// The same call on every rank ends in the same kind of exception, whoever has thrown it.
+/// The same call on every rank ends in the same kind of exception, whichever rank threw it.
 TEST(Ranks, WhatOneRankThrowsAllThrow)
 {
   const Ranks ranks = Ranks::world();
@@ -157,10 +157,10 @@ TEST(Ranks, WhatOneRankThrowsAllThrow)
   }
   EXPECT_THROW(last_throws(std::bad_alloc()), std::bad_alloc);
   EXPECT_THROW(last_throws(std::runtime_error("disk full")), std::runtime_error);
-  EXPECT_EQ(ranks.together([&] { return 2 * ranks.rank(); }), 2 * ranks.rank());  // and nothing is left over
+  EXPECT_EQ(ranks.together([&] { return 2 * ranks.rank(); }), 2 * ranks.rank());  // no messages are left
 }
 
-/// Of several failures the others hear of that of the lowest rank.
+/// If several ranks fail, the others are told of the failure of the lowest rank.
 TEST(Ranks, TheLowestRankIsHeard)
 {
   const Ranks ranks = Ranks::world();

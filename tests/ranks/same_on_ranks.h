@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file same_on_ranks.h
-/// The adaptive, certified loop by all ranks together against the same by each alone.
+/// The adaptive, certified loop by all ranks together against the same loop by each rank alone.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 namespace tribound::test
 {
 
-/// What is to agree of a level.
+/// What must agree of a level.
 struct Summary
 {
   std::int64_t cells;
@@ -72,7 +72,7 @@ template <int dim>
   strategy.observer.level = [&](const adapt::LevelView<dim>& view) { levels.push_back(summary(view)); };
   const std::weak_ptr<const mesh::Mesh<dim>> kept = whole;
   adapt::Levels<dim> loop(problem, method, options.tolerance, std::move(first), nullptr, std::move(whole));
-  EXPECT_TRUE(kept.expired());  // no rank has the whole any longer
+  EXPECT_TRUE(kept.expired());  // no rank keeps the whole mesh
   EXPECT_EQ(adapt::adapt(loop, strategy).status, certify::RunStatus::budget);
   return levels;
 }

@@ -1,5 +1,5 @@
 /// @file space_test.cpp
-/// Numbers and owners of nodes on several ranks, and what fixes them, against the whole mesh.
+/// Numbers, owners and constraints of nodes on several ranks, against the whole mesh.
 
 #include "tribound/fem/space.h"
 
@@ -29,7 +29,7 @@ namespace tribound::test
 namespace
 {
 
-/// A mesh that no two cells of have one shape, whole and as the part of this rank.
+/// A mesh whose cells all differ in shape, whole and as the part of this rank.
 template <int dim>
 struct Shared
 {
@@ -65,7 +65,7 @@ void expect_numbers(int degree)
   EXPECT_FALSE(whole.numbers());
   EXPECT_EQ(part.n_global_dofs(), whole.n_dofs());
 
-  // Every number from 0 on has one place, the same on all ranks that have it, and one owner.
+  // Every number from 0 on has one owner and one place, the same on all ranks that have it.
   std::vector<double> at(whole.n_dofs(), 0.0);
   std::vector<std::int64_t> owners(whole.n_nodes(), 0);
   for (Index k = 0; k < part.n_owned_nodes(); ++k)
@@ -85,7 +85,7 @@ void expect_numbers(int degree)
   for (Index number = 0; number < whole.n_nodes(); ++number)
     EXPECT_EQ(places.count(key<dim>(Point<dim>(&at[dim * number]))), 1);
 
-  // update() gives ghosts what the owner has.
+  // update() gives ghosts the owner's values.
   std::vector<double> values(part.n_dofs(), -1.0);
   for (Index k = 0; k < part.n_owned_nodes(); ++k)
     for (int a = 0; a < dim; ++a) values[dim * part.owned_node(k) + a] = points[part.owned_node(k)][a];
@@ -95,7 +95,7 @@ void expect_numbers(int degree)
     EXPECT_EQ(key<dim>(Point<dim>(&values[dim * node])), key<dim>(points[node]));
 }
 
-/// Values at the nodes of the whole space, found by their places.
+/// Values at the nodes of the whole space, looked up by place.
 template <int dim>
 class ByPlace
 {
@@ -112,7 +112,7 @@ class ByPlace
   std::map<std::array<std::int64_t, dim>, const double*> values_;
 };
 
-/// K u, with conditions of two boundaries that meet.
+/// K u, with conditions on two boundaries that meet.
 template <int dim>
 void expect_same_products(int degree)
 {
@@ -156,8 +156,8 @@ void expect_same_products(int degree)
           });
 }
 
-/// K u of the whole mesh, with a bug that gives a node of another rank the number of its neighbour: seen in
-/// the products.
+/// K u of the whole mesh. A bug that gives a node of another rank its neighbour's number is seen in the
+/// products.
 TEST(Nodes, NumberedTwiceMakeAnotherMatrix)
 {
   const Shared<2> mesh(3);
@@ -194,7 +194,7 @@ TEST(Nodes, AreNumberedOnceAndAgreeByPlace)
   }
 }
 
-/// Condensed onto what lies at x_1 < 0.3, with a layer up to 0.6: all that it gives, at its unknowns.
+/// The condensation onto x_1 < 0.3 with a layer up to 0.6: all its results, at its unknowns.
 template <int dim>
 struct Condensed
 {
@@ -250,8 +250,8 @@ struct Condensed
   fem::Constraints constraints;
   std::vector<double> u;
   std::vector<double> forces;  ///< S x - g
-  double distance;             ///< of expand() from near()
-  double residual;             ///< of solve()
+  double distance;             ///< between expand() and near()
+  double residual;             ///< from solve()
 };
 
 template <int dim>

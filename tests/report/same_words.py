@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Compares what the certificate, the program and the page say of a run: verdict, reason and warnings.
+"""Compares what the certificate, the program and the page say about a run: verdict, reason and warnings.
 
     same_words.py PROGRAM CASES DIRECTORY
 
-CASES: the folder of the test cases. The page is read as Chromium has built it. Exit code 77: there is no Chromium, or
-the page is not built.
+CASES: the folder of the test cases. The page is read as Chromium renders it. Exit code 77: there is no Chromium, or the
+page is not built.
 """
 
 import json
@@ -37,7 +37,7 @@ RIGID = [
     'boundary.bottom.contact={friction="coulomb", coefficient=0.3, gap=0.5}',
 ]
 
-# name, overrides of t2d.toml, status, codes of warnings that there must be
+# name, overrides of t2d.toml, status, codes of expected warnings
 RUNS = [
     ("certified", [*SMALL, "adapt.tolerance=0.2"], "certified", []),
     ("certified_with_warnings", ["adapt.tolerance=0.7", FRICTION], "certified", ["few_contact_facets"]),
@@ -50,7 +50,7 @@ RUNS = [
 
 
 class Page(HTMLParser):
-    """Texts of the page: verdicts, warnings, everything. Formulas count as the texts from which they are set."""
+    """Texts of the page: verdicts, warnings, everything. A formula counts as its source text."""
 
     VOID = {"meta", "link", "br", "img", "input", "hr"}
 
@@ -110,7 +110,7 @@ def dump(browser, page, profile):
 
 
 def differences(status, codes, certificate, printed, page):
-    """What of the certificate is not said by the others, or what they say beyond it."""
+    """What the certificate says and the others do not, or what they say beyond it."""
     if certificate["status"] != status:
         yield f"the certificate says {certificate['status']!r}, expected {status!r}"
     for code in codes:
@@ -123,7 +123,7 @@ def differences(status, codes, certificate, printed, page):
         yield f"the page has {len(page.verdicts)} verdicts"
         return
     verdict = words(page.verdicts[0])
-    if not verdict[1:].startswith(TITLES[status]):  # behind the mark
+    if not verdict[1:].startswith(TITLES[status]):  # after the mark
         yield f"the page does not say {TITLES[status]!r} but {verdict!r}"
     if status == "failed" and "No solution was found" not in verdict:
         yield f"the page says of a failed run {verdict!r}"
