@@ -1,5 +1,5 @@
 /// @file finer_contact_test.cpp
-/// Solutions carried to finer meshes for error bars: a function that is not the same is noticed.
+/// Solutions carried to finer meshes for error bars: a changed function is noticed.
 
 #include "tribound/adapt/finer_contact.h"
 
@@ -28,7 +28,7 @@ ProblemData<dim> pressed_blocks()
           .pairs = {pair<dim>("bottom", "top_below", Tresca(0.03))}};
 }
 
-/// A wave and a motion of the whole; the lower block waves half as much, so that contact opens and closes.
+/// A wave plus a rigid motion; the lower block has half the amplitude, so contact opens and closes.
 template <int dim>
 std::vector<double> wave(const fem::LagrangeSpace<dim>& space, double motion)
 {
@@ -47,8 +47,8 @@ std::vector<double> wave(const fem::LagrangeSpace<dim>& space, double motion)
   return u;
 }
 
-/// `finer(form, u)` holds u, and two values that are swapped in one cell are found. Large motions of the
-/// whole, which have no energy, are no fault.
+/// `finer(form, u)` represents u, and two swapped values in one cell are noticed. Large rigid motions, which
+/// have no energy, are not an error.
 template <int dim, class MakeFiner>
 void expect_noticed(const DiscreteProblem<dim>& c, const MakeFiner& finer)
 {

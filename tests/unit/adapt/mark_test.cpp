@@ -1,4 +1,4 @@
-/// Marking: against all subsets, against sorting, and where estimates are equal or zero.
+/// Marking, against all subsets and against sorting; equal and zero estimates.
 
 #include "tribound/adapt/mark.h"
 
@@ -32,7 +32,7 @@ double sum_of_squares(std::span<const double> eta)
   return std::inner_product(eta.begin(), eta.end(), eta.begin(), 0.0);
 }
 
-/// Small whole numbers, so that sums of squares are exact and many are equal; some are 0.
+/// Small integers, so that sums of squares are exact and many are equal; some are 0.
 std::vector<double> whole_numbers(std::size_t n, unsigned seed)
 {
   std::mt19937 random(seed);
@@ -41,7 +41,7 @@ std::vector<double> whole_numbers(std::size_t n, unsigned seed)
   return eta;
 }
 
-/// theta^2 is exact for these.
+/// Their squares are exact.
 constexpr std::array thetas{0.125, 0.25, 0.5, 0.75, 0.875, 1.0};
 
 TEST(MarkDoerfler, NoSubsetIsSmaller)
@@ -85,7 +85,7 @@ TEST(MarkDoerfler, IsTheBeginningOfTheSortedCells)
     }
 }
 
-/// Estimates over many orders of magnitude: the set reaches the goal and does not without its least cell.
+/// Estimates over many orders of magnitude: the set reaches the goal, but not without its least cell.
 TEST(MarkDoerfler, ReachesTheGoalAndNoMore)
 {
   std::mt19937 random(3);
@@ -139,7 +139,7 @@ TEST(Mark, NothingWhereNothingIsEstimated)
   EXPECT_THAT(adapt::mark_maximum({}, 0.5), IsEmpty());
 }
 
-/// Cells with these values of str and of cnt.
+/// Cells with these values of str and cnt.
 std::vector<certify::BoundComponents> cells_with(std::span<const double> str, std::span<const double> cnt)
 {
   std::vector<certify::BoundComponents> cells(str.size());
@@ -172,7 +172,7 @@ TEST(Mark, TheContactPartIsMarkedForItselfWhenAsked)
   EXPECT_THAT(adapt::mark(cells, options), ElementsAre(1));
   options.separate_contact = true;
   EXPECT_THAT(adapt::mark(cells, options), ElementsAre(0, 1));
-  // Below a tenth of the bound it is left to the body.
+  // Below a tenth of the bound, contact is not marked separately.
   EXPECT_THAT(adapt::mark(cells_with(str, std::vector{0.5, 0.0, 0.0, 0.0}), options), ElementsAre(1));
 }
 

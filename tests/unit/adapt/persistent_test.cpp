@@ -32,7 +32,7 @@ struct Found
   solve::NewtonResult<dim> result;
   std::vector<int> degrees_before;    ///< of the steps that led to the start
   std::vector<double> gamma0_before;  ///< likewise
-  std::vector<int> degrees;           ///< of those from it
+  std::vector<int> degrees;           ///< of the steps from it
 };
 
 template <int dim>
@@ -54,15 +54,15 @@ Found<dim> find(const DiscreteProblem<dim>& c, const adapt::Method& method,
   return found;
 }
 
-/// The same pulled up, so that most of it leaves the floor.
+/// The same block pulled up, so that most of it leaves the floor.
 ProblemData<3> lifted_block(const problem::ContactLaw& law)
 {
   return {.boundaries = {clamped<3>("left"), loaded<3>("top", 0, -0.1), loaded<3>("right", 0.04, 0.06, 0.02),
                          obstacle<3>("bottom", law)}};
 }
 
-/// From gamma of a mesh with one facet on the contact boundary, here with 18 across, to the given one by
-/// factors 3, in fewer steps to the same solution.
+/// Starts with gamma of a mesh with one facet on the contact boundary, here 18 across. Factors of 3 lead to
+/// the given gamma and, in fewer steps, to the same solution.
 TEST(SoftStart, LeadsToTheSameSolutionInFewerSteps)
 {
   const mesh::MeshData<3> mesh = block<3>({18, 9, 9});
@@ -94,7 +94,7 @@ TEST(SoftStart, EndsWhereNearlyAllIsClosedAndSticking)
   EXPECT_LE(norm(sum(found.result.u, -1, expected)), 1e-8 * norm(expected));
 }
 
-/// The start for degree 2 is the solution with degree 1, which starts likewise.
+/// The start for degree 2 is the solution with degree 1, which has such a start itself.
 TEST(SoftStart, ComesFirstForHigherDegrees)
 {
   const adapt::Method method{.degree = 2};

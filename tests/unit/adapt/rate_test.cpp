@@ -1,4 +1,4 @@
-/// Rates of quantities that are known to behave like powers.
+/// Rates of quantities with known power-law behaviour.
 
 #include "tribound/adapt/rate.h"
 
@@ -27,7 +27,7 @@ TEST(Rate, OfAPower)
   EXPECT_NEAR(*adapt::fitted_rate(points), -0.75, 1e-14);
 }
 
-/// The last half: levels 2 to 4 of five, 3 to 5 of six.
+/// The last half is levels 2 to 4 of five, 3 to 5 of six.
 TEST(Rate, FittedOverTheLastHalf)
 {
   for (const std::size_t n : {5, 6})
@@ -42,8 +42,8 @@ TEST(Rate, FittedOverTheLastHalf)
   }
 }
 
-/// A straight line through (0, 0), (1, 1), (2, 1), (3, 2), (4, 4) in logarithms: of the last three points the
-/// slope is 3/2.
+/// Points (0, 0), (1, 1), (2, 1), (3, 2), (4, 4) in logarithms: the line through the last three has slope
+/// 3/2.
 TEST(Rate, IsTheLeastSquaresSlope)
 {
   std::vector<adapt::RatePoint> points;

@@ -1,6 +1,6 @@
 /// @file cholesky_test.cpp
-/// Which symmetric matrices are positive definite: those of the string with n inner nodes, whose eigenvalues
-/// are 2 - 2 cos(k pi / (n + 1)).
+/// Which symmetric matrices are positive definite. The string with n inner nodes has the eigenvalues
+/// 2 - 2 cos(k pi / (n + 1)).
 
 #include "tribound/algebra/cholesky.h"
 

@@ -22,7 +22,7 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 constexpr int n = 30;
-const std::vector<Index> layer{4, 0, 17, 29};  // in no order
+const std::vector<Index> layer{4, 0, 17, 29};  // in no particular order
 const std::vector<Index> trace{9, 25, 3, 11, 10};
 
 std::vector<double> values(const Vector& v)
@@ -74,7 +74,7 @@ algebra::SparseRows rows(const Matrix& a)
   return result;
 }
 
-/// K u = b + f with f on the trace: f = S x - g, and u, for the given x there.
+/// K u = b + f with f on the trace: f = S x - g and u for the given x on the trace.
 struct Reference
 {
   Reference(const Matrix& k, const Vector& b, const Vector& x) : u(n)
@@ -93,7 +93,7 @@ struct Reference
 
 TEST(Condensation, IsTheWholeProblemOnTheTrace)
 {
-  for (const double ground : {0.0, 1e-3, 1.0})  // 0: only what acts on the trace can hold it
+  for (const double ground : {0.0, 1e-3, 1.0})  // with 0 only forces on the trace can hold it
   {
     const Matrix k = springs(ground);
     algebra::Condensation condensed(2, rows(k), layer, trace, values(random_vector(n, 1)));
@@ -115,7 +115,7 @@ TEST(Condensation, IsTheWholeProblemOnTheTrace)
   }
 }
 
-/// Entries of rows on the trace, columns on trace and layer, some twice, some that do not count.
+/// Entries with rows on the trace and columns on trace and layer; some occur twice, some are ignored.
 algebra::Triplets forces_on_trace()
 {
   std::mt19937 random(5);

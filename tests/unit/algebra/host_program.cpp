@@ -1,6 +1,6 @@
 /// @file host_program.cpp
-/// A program that has started MPI and PETSc before it uses the library: both stay its own, and so do its
-/// options. Exit code 0 if all is as it should be.
+/// A program that starts MPI and PETSc before it uses the library: it keeps control of both, and of its
+/// options. Exit code 0 if all is well.
 
 #include <mpi.h>
 #include <petscksp.h>

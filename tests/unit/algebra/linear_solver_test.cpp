@@ -1,5 +1,5 @@
 /// @file linear_solver_test.cpp
-/// One system solved in every way; what is kept from one system to the next.
+/// One system solved by every method; what is kept from one system to the next.
 
 #include "tribound/algebra/linear_solver.h"
 
@@ -18,7 +18,7 @@ namespace tribound::test
 namespace
 {
 
-/// The stiffness of a clamped block with a right-hand side of known solution.
+/// The stiffness of a clamped block, and a right-hand side with known solution.
 template <int dim>
 struct System
 {
@@ -75,7 +75,7 @@ TEST(LinearSolver, MumpsUmfpackAndMultigridAgree)
   }
 }
 
-/// What p-multigrid takes to 1e-10 on a problem; the solution must be that of the matrix.
+/// Iterations of p-multigrid to 1e-10 on a problem; the solution must be that of the matrix.
 template <int dim>
 int p_multigrid_iterations(const DiscreteProblem<dim>& c)
 {
@@ -83,7 +83,7 @@ int p_multigrid_iterations(const DiscreteProblem<dim>& c)
   const algebra::SparseMatrix a(dim, rows);
   std::vector<double> exact = random_free_vector(c.form.constraints(), 1.0, 2);
   for (std::size_t i = 0; i < exact.size(); ++i)
-    if (c.form.constraints().fixed[i] != 0) exact[i] = 0.5;  // decoupled, but equations all the same
+    if (c.form.constraints().fixed[i] != 0) exact[i] = 0.5;  // decoupled, but still equations
   const std::vector<double> b = multiply(entries(rows), exact);
   algebra::LinearSolver solver({.method = algebra::LinearMethod::iterative}, c.space);
   std::vector<double> x(exact.size(), 0.0);
@@ -92,7 +92,7 @@ int p_multigrid_iterations(const DiscreteProblem<dim>& c)
   return iterations;
 }
 
-/// Components fixed on different sides, which meet at edges and corners.
+/// Components fixed on different sides that meet at edges and corners.
 template <int dim>
 ProblemData<dim> held_by_components()
 {
@@ -133,7 +133,7 @@ TEST(LinearSolver, IterationsOfPMultigridHardlyGrowWithTheDegree)
   }
 }
 
-/// Every vertex of such meshes may be fixed, so that P^1 has nothing but decoupled degrees of freedom.
+/// Every vertex of such meshes may be fixed; P^1 then has only decoupled degrees of freedom.
 TEST(LinearSolver, PMultigridTakesTheSmallestMeshes)
 {
   for (const int degree : {2, 3, 4})
@@ -185,8 +185,8 @@ TEST(LinearSolver, PMultigridIsRenewedWithTheMatrix)
   EXPECT_LE(distance(x, system.x), 1e-7 * norm(system.x));
 }
 
-/// Springs of several stiffnesses below a block, through all kinds of levels: the same iterations whether
-/// multigrid is told that nothing else changes or not, and few.
+/// Springs of several stiffnesses below a block, with all kinds of levels. Iterations are few, and as many
+/// whether or not multigrid is told that nothing else changes.
 void expect_renewed_by_part(const mesh::MeshData<3>& mesh, int degree)
 {
   const DiscreteProblem<3> c(mesh, {.boundaries = {clamped<3>("left")}}, {.degree = degree});
@@ -221,8 +221,8 @@ void expect_renewed_by_part(const mesh::MeshData<3>& mesh, int degree)
 TEST(LinearSolver, MultigridIsRenewedByThePartThatChanges)
 {
   expect_renewed_by_part(block<3>({12, 6, 6}), 1);    // aggregation
-  expect_renewed_by_part(block<3>({6, 3, 3}), 3);     // through the degrees to a factorisation
-  expect_renewed_by_part(block<3>({12, 12, 12}), 2);  // and to aggregation
+  expect_renewed_by_part(block<3>({6, 3, 3}), 3);     // by degree down to a factorisation
+  expect_renewed_by_part(block<3>({12, 12, 12}), 2);  // by degree down to aggregation
 }
 
 TEST(LinearSolver, ADirectSolveTakesOneIteration)
@@ -250,7 +250,7 @@ TEST(LinearSolver, HalfTheFactorsOfAPositiveDefiniteMatrixWillDo)
   }
 }
 
-/// Systems that change little are solved with old factors, and as exactly.
+/// Systems that change little are solved with old factors, just as accurately.
 TEST(LinearSolver, KeepsFactorsForSimilarSystems)
 {
   const System<2> system;
@@ -268,7 +268,7 @@ TEST(LinearSolver, KeepsFactorsForSimilarSystems)
   EXPECT_LE(norm(sum(x, -1 / 1.5, system.x)), 1e-8 * norm(system.x));
 }
 
-/// Factors of a very different matrix are given up, and the answer is right.
+/// Factors of a very different matrix are discarded, and the answer is right.
 TEST(LinearSolver, FactorsAnewWhereOldFactorsDoNotHelp)
 {
   const System<2> system;
@@ -303,7 +303,8 @@ TEST(LinearSolver, ASingularMatrixIsAnError)
   }
 }
 
-/// One iteration is not enough for multigrid: who did not ask for it gets a factorisation, from then on.
+/// One iteration is not enough for multigrid: unless it was requested, a factorisation replaces it from then
+/// on.
 TEST(LinearSolver, FallsBackToAFactorisationUnlessToldOtherwise)
 {
   const System<3> system;

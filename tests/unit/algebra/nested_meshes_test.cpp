@@ -1,6 +1,6 @@
 /// @file nested_meshes_test.cpp
-/// Multigrid on the meshes that bisection has led through: the inclusions, what they make of matrices, and
-/// iterations that do not grow.
+/// Multigrid on the meshes of successive bisections: inclusions, coarse matrices, and iterations that do not
+/// grow.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ struct NestedMeshes
     return with_it - meshes.begin();
   }
 
-  /// A function of mesh `from`, P^1, on mesh `to`, carried over geometrically.
+  /// A P^1 function of mesh `from`, carried over geometrically to mesh `to`.
   [[nodiscard]] std::vector<double> carried(std::vector<double> u, std::size_t from, std::size_t to) const
   {
     for (std::size_t k = from; k < to; ++k)
@@ -64,7 +64,7 @@ struct NestedMeshes
   }
 
   std::vector<mesh::Mesh<dim>> meshes;
-  std::vector<std::vector<Index>> parents;  ///< of the cells of all but the first
+  std::vector<std::vector<Index>> parents;  ///< of the cells of all meshes but the first
 };
 
 /// P u, or P^T u, for all components.
@@ -98,7 +98,7 @@ void expect_inclusions_of_meshes(int degree)
   std::size_t n_of_meshes = 0;
   for (const algebra::NodeInterpolation& step : hierarchy.steps)
   {
-    if (step.n_fine > finest.n_vertices()) continue;  // from a degree to a lower one
+    if (step.n_fine > finest.n_vertices()) continue;  // a step between degrees
     ++n_of_meshes;
     EXPECT_LE(3 * step.n_coarse, 2 * step.n_fine);
     const std::size_t from = nested.number_of(step.n_coarse);
@@ -183,7 +183,7 @@ std::vector<int> iterations(const NestedMeshes<dim>& nested, const ProblemData<d
   return result;
 }
 
-/// Neither fixed components on sides that meet nor a region of very different stiffness make them grow.
+/// Iterations do not grow with fixed components on sides that meet or a region of very different stiffness.
 template <int dim>
 void expect_few_iterations(int degree, int n_bisections, int most)
 {
@@ -208,7 +208,7 @@ TEST(NestedMeshes, KeepTheIterationsBounded)
   expect_few_iterations<3>(2, 2, 30);
 }
 
-/// Where meshes grow too slowly, there are no steps between them.
+/// If meshes grow too slowly, there are no steps between them.
 TEST(NestedMeshes, LeaveSlowGrowthToAggregation)
 {
   const NestedMeshes<2> nested(block<2>({6, 3}), 16);
@@ -219,7 +219,7 @@ TEST(NestedMeshes, LeaveSlowGrowthToAggregation)
   EXPECT_EQ(hierarchy.coarsest_coordinates.size(), 2U * finest.n_vertices());
 }
 
-/// A given mesh too large for a factorisation, below finer meshes and below P^2.
+/// A first mesh too large for a factorisation, below finer meshes and below P^2.
 TEST(NestedMeshes, LeaveALargeFirstMeshToAggregation)
 {
   const ProblemData<2> data{.boundaries = {clamped<2>("left")}};

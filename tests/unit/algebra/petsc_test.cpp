@@ -19,7 +19,7 @@ namespace tribound::test
 namespace
 {
 
-/// Random entries with repetitions and some that do not count.
+/// Random entries, with repetitions and some that are ignored.
 algebra::Triplets random_entries(int n, int count, unsigned seed)
 {
   std::mt19937 random(seed);
@@ -38,7 +38,7 @@ std::vector<double> ramp(int n)
   return x;
 }
 
-/// What OpenBLAS takes on a processor that it does not know is for those without AVX2.
+/// On a processor that it does not know, OpenBLAS takes kernels for processors without AVX2.
 TEST(Blas, RunsTheKernelsOfTheProcessor)
 {
   const std::string library = algebra::blas_facts().library;

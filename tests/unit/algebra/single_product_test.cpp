@@ -22,7 +22,7 @@ namespace
 
 using algebra::detail::SingleProduct;
 
-/// Entries of every magnitude within eight decades; rows of a block have different patterns.
+/// Entries of all magnitudes within eight decades; the rows of a block have different patterns.
 algebra::Triplets scattered(int n, double unit, unsigned seed)
 {
   std::mt19937 random(seed);
@@ -44,7 +44,7 @@ std::vector<double> random_vector(int n, double unit, unsigned seed)
   return x;
 }
 
-/// MatMult() as PETSc's solvers call it.
+/// MatMult(), called as PETSc's solvers call it.
 std::vector<double> product(Mat a, const std::vector<double>& x)
 {
   std::vector<double> y(x.size());
@@ -111,7 +111,7 @@ algebra::MatHandle scattered_blocks(int n, int m, std::array<int, 2> block, unsi
   return algebra::MatHandle(mat);
 }
 
-/// Interpolations by aggregation have blocks of the components of a node and the modes of an aggregate.
+/// Interpolations by aggregation have blocks: components of a node times modes of an aggregate.
 TEST(SingleProduct, InterpolatesAndAdds)
 {
   using algebra::detail::wrap;

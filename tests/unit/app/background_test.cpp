@@ -53,7 +53,7 @@ TEST_F(BackgroundTest, WithOneThreadAJobIsDoneInPlace)
 TEST_F(BackgroundTest, JobsFollowEachOther)
 {
   app::Background background;
-  int sum = 0;  // of one thread at a time
+  int sum = 0;  // used by one thread at a time
   for (int i = 0; i < 100; ++i) background.start([&sum, i] { sum += i; });
   background.wait();
   EXPECT_EQ(sum, 4950);

@@ -1,4 +1,4 @@
-// The schema of the case format, and what it takes from the guide.
+// The schema of the case format, and its descriptions from the guide.
 
 #include "app/result/case_schema.h"
 
@@ -19,7 +19,7 @@ namespace
 
 using testing::IsEmpty;
 
-/// The keys below `schema` that are not described, or whose default they would not take.
+/// The keys below `schema` that are not described or do not accept their own default.
 void collect(const io::Json& schema, const std::string& path, std::vector<std::string>& faults)
 {
   if (!schema.is_object()) return;

@@ -197,7 +197,7 @@ TEST(Console, ResultsCarryTheirUnits)
                     HasSubstr("              safety: 3, guaranteed between 2 and 4 (duality gap)\n")));
 }
 
-/// A path and the same with half the steps, on which everything is a tenth larger.
+/// A path and the same path with half the steps, on which everything is a tenth larger.
 io::RunRecord checked_run()
 {
   const auto step = [](double factor)

@@ -1,4 +1,4 @@
-/// The script that draws figures is run with its argument as it stands, and its failure is told.
+/// The script that draws figures gets its argument unchanged, and its failure is reported.
 
 #include "app/result/study.h"
 
@@ -14,7 +14,7 @@ namespace tribound
 namespace
 {
 
-/// A directory with a name that a shell would not leave as it is, and a script in it.
+/// A directory with a name that a shell would change, and a script in it.
 class Figures : public ::testing::Test
 {
  protected:

@@ -1,5 +1,5 @@
 /// @file findings_output_test.cpp
-/// What the doctor has found, on the screen and as JSON.
+/// The doctor's findings, on the screen and as JSON.
 
 #include <gtest/gtest.h>
 

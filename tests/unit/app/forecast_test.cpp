@@ -31,7 +31,7 @@ TEST(Forecast, FollowsTheRate)
   EXPECT_EQ(app::forecast_text(with_rate(-1, 3), 100'000), "  at this rate 1 % needs 5000 unknowns");
   EXPECT_EQ(app::forecast_text(with_rate(-0.5, 5), 100'000),
             "  at this rate 1 % needs 250000 unknowns, above adapt.max_dofs");
-  // 625 rounds either way.
+  // 625 is rounded to either side.
   EXPECT_THAT(app::forecast_text(with_rate(-0.25, 3), 2'000'000'000),
               ::testing::AnyOf("  at this rate 1 % needs 620 million unknowns",
                                "  at this rate 1 % needs 630 million unknowns"));

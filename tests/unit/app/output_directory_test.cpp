@@ -96,7 +96,7 @@ TEST_F(OutputDirectoryTest, RemovesResultsByName)
   EXPECT_TRUE(fs::exists(directory / "mine.csv"));
 }
 
-/// A case file that stands in the output directory is not replaced by something else.
+/// A case file in the output directory is not replaced by something else.
 TEST(OutputDirectory, EffectiveCaseDoesNotReplaceTheCaseOfTheUser)
 {
   const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "effective_case";

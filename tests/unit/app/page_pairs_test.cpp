@@ -33,7 +33,7 @@ Point<3> vertex(const app::Surface& surface, Index face, std::size_t place)
                   3 * static_cast<std::size_t>(surface.faces[face * surface.n_face_points() + place]));
 }
 
-/// Corner c of triangle i, from the corners of its face.
+/// Corner c of triangle i, computed from the corners of its face.
 Point<3> corner(const app::Surface& surface, const app::FaceParts& parts, std::size_t i, std::size_t c)
 {
   const Index face = parts.faces[i];
@@ -99,7 +99,7 @@ TEST(PagePairs, ManySegmentsBecomeMeansOverFacets)
   const double force = -contact::contact_resultants<3>(blocks.form, blocks.form.traction(blocks.u)).normal;
   EXPECT_NEAR(integral(surface, pairs[0].slave, pairs[0].values.pressure), force, 1e-12);
   EXPECT_TRUE(pairs[1].slave.faces.empty());
-  // The slave covers no part of the triangles in two corners of the master.
+  // The slave covers no part of the triangles at two corners of the master.
   EXPECT_EQ(pairs[1].master.faces.size(), 16u);
   EXPECT_EQ(pairs[1].values.status.size(), 16u);
 }

@@ -38,7 +38,7 @@ TEST(PageProfile, ValuesAlongTheFloor)
   }
 }
 
-/// A bond opened by 0.3 x - 0.1, with water in it.
+/// A bond opened by 0.3 x - 0.1, filled with water.
 TEST(PageProfile, WhatAJointRemembers)
 {
   ProblemData<2> data{.boundaries = {clamped<2>("left"),
@@ -57,7 +57,7 @@ TEST(PageProfile, WhatAJointRemembers)
     EXPECT_NEAR(profile.water[i], 0.01 * profile.points[2 * i], 1e-14);
     EXPECT_EQ(profile.opening[i] > 0, profile.damage[i] > 0);
     if (profile.damage[i] < 1) continue;
-    EXPECT_NEAR(profile.pressure[i], profile.water[i], 1e-12);  // nothing else acts on what is broken
+    EXPECT_NEAR(profile.pressure[i], profile.water[i], 1e-12);  // nothing else acts on the broken part
     EXPECT_EQ(profile.status[i], static_cast<Index>(problem::ContactStatus::open));
   }
   EXPECT_EQ(profile.damage.front(), 0);

@@ -13,7 +13,7 @@ namespace tribound::test
 namespace
 {
 
-/// Vertex v in 3 coordinates.
+/// The three coordinates of vertex v.
 Point<3> position(const app::Surface& surface, int dim, Index v)
 {
   Point<3> x = Point<3>::Zero();
@@ -21,7 +21,7 @@ Point<3> position(const app::Surface& surface, int dim, Index v)
   return x;
 }
 
-/// Half the sum of the cross products: areas with their normals, of the triangle a, b, c of every face.
+/// Area times normal of triangle a, b, c of a face: half the cross product.
 Point<3> area_vector(const app::Surface& surface, int dim, std::size_t face, int a, int b, int c)
 {
   const Index* v = surface.faces.data() + face * surface.n_face_points();
@@ -29,7 +29,7 @@ Point<3> area_vector(const app::Surface& surface, int dim, std::size_t face, int
   return 0.5 * mesh::cross(position(surface, dim, v[b]) - x, position(surface, dim, v[c]) - x);
 }
 
-/// Of the whole face, from its corners.
+/// Area times normal of the whole face, from its corners.
 Point<3> area_vector(const app::Surface& surface, int dim, std::size_t face)
 {
   return area_vector(surface, dim, face, 0, surface.subdivision,

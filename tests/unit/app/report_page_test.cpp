@@ -30,7 +30,7 @@ class ReportPageFile : public ::testing::Test
     std::ofstream(template_) << "<html>head " << app::page_data_marker << " tail</html>";
   }
 
-  /// The page after its data have been checked to stand in one script element.
+  /// The data of the page; checks that they are in a single script element.
   json data() const
   {
     std::ifstream file(directory_ / "report.html");
@@ -184,7 +184,7 @@ TEST_F(ReportPageFile, TrueErrorsOfAStudyAreAddedOnce)
   EXPECT_FALSE(std::filesystem::exists(directory_ / "missing.html"));
 }
 
-/// What 200 000 cells may take: the page is then below 10 MB.
+/// The size that keeps a page with 200 000 cells below 10 MB.
 TEST_F(ReportPageFile, SizeOfALevel)
 {
   const DiscreteProblem<2> box = constant_stress_problem<2>(1, 100);

@@ -48,7 +48,7 @@ boundary.bottom.contact = { friction = "tresca", threshold = 0.01 }
 adapt = { tolerance = 1e-6, max_levels = 4 }
 )";
 
-/// Without what a clock has told.
+/// Removes what depends on a clock.
 nlohmann::json without_times(nlohmann::json value)
 {
   if (value.is_object())
@@ -58,7 +58,7 @@ nlohmann::json without_times(nlohmann::json value)
   return value;
 }
 
-/// convergence.csv without its columns of times, the three last ones.
+/// convergence.csv without its last three columns, which are times.
 std::string without_times(const std::string& table)
 {
   std::istringstream lines(table);
@@ -77,7 +77,7 @@ nlohmann::json page_data(const std::string& page)
   return without_times(data);
 }
 
-/// The files of a directory, as far as they do not depend on a clock.
+/// The files of a directory without what depends on a clock.
 std::map<std::string, std::string> contents(const fs::path& directory)
 {
   std::map<std::string, std::string> files;
@@ -112,8 +112,8 @@ class RunReportTest : public ::testing::Test
 
   [[nodiscard]] fs::path out(int threads) const { return directory / std::to_string(threads); }
 
-  /// One run reported twice, in place and beside the computation, which has one thread; `between` is called
-  /// after every level.
+  /// One run reported twice: in place and in parallel with the computation, which has one thread. `between`
+  /// is called after every level.
   template <int dim>
   void report_twice(const std::string& text, const std::function<void(int level)>& between = {}) const
   {
@@ -133,7 +133,7 @@ class RunReportTest : public ::testing::Test
     }
     const auto each = [&](const auto& tell)
     {
-      for (const int i : {1, 0})  // beside the computation first: it has some time
+      for (const int i : {1, 0})  // in parallel first: it needs some time
       {
         omp_set_num_threads(i + 1);
         tell(*reports[i]);
@@ -174,7 +174,7 @@ TEST_F(RunReportTest, TheFilesDoNotDependOnTheNumberOfThreads)
     }
 }
 
-/// What is written beside the computation of a level is known to have failed when this level is complete.
+/// When writing in parallel with the computation of a level fails, this is known once the level is complete.
 TEST_F(RunReportTest, WhatCannotBeWrittenEndsTheRun)
 {
   for (const int threads : {1, 2})

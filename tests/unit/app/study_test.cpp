@@ -112,7 +112,7 @@ TEST(Study, WhatIsNotKnownIsEmptyInTheTableAndNullInJson)
   EXPECT_TRUE(json["reference"].is_null());
   for (const char* name : {"energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress"})
     EXPECT_TRUE(json["variants"]["adaptive"]["levels"][0][name].is_null()) << name;
-  EXPECT_TRUE(json["variants"]["uniform"]["rates"]["error"].is_null());  // of one level
+  EXPECT_TRUE(json["variants"]["uniform"]["rates"]["error"].is_null());  // only one level
 }
 
 TEST(Study, JsonHasTheFieldsOfTheTable)
@@ -146,7 +146,7 @@ TEST(Study, ComparesWithAndWithoutTheCriterion)
   ASSERT_EQ(json["difference"]["adaptive"].size(), 3u);
   EXPECT_EQ(json["difference"]["adaptive"][0], 0.0);
   EXPECT_NEAR(json["difference"]["adaptive"][1].get<double>(), 0.03, 1e-14);
-  EXPECT_TRUE(json["difference"]["adaptive"][2].is_null());  // no mesh as fine as that without the criterion
+  EXPECT_TRUE(json["difference"]["adaptive"][2].is_null());  // without the criterion there is no mesh as fine
   EXPECT_TRUE(json["difference"]["uniform"].is_null());
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file two_blocks.h
-/// A block on a wider one at a distance, whose meshes do not match.
+/// A block above a wider one, at a distance; their meshes do not match.
 
 #include "support/meshes.h"
 #include "support/problem_data.h"
@@ -29,7 +29,7 @@ struct TwoBlocks
   {
   }
 
-  /// The upper one is the block of test::block(), the lower one wider by 1/2 on all sides.
+  /// The upper block is that of test::block(); the lower one is wider by 1/2 on all sides.
   static mesh::MeshData<dim> blocks(int n)
   {
     Point<dim> corner = Point<dim>::Ones();

@@ -64,7 +64,7 @@ TEST(Verification, WhatRunWouldRefuseIsRefused)
   v.iterates[1].identities = 1.1e-8;
   EXPECT_THAT(app::violation(v), HasSubstr("an identity of the equilibrated stress is violated"));
   EXPECT_EQ(nlohmann::json::parse(app::verification_json(v))["guarantee"], "not certified");
-  v.iterates[1].norms.round_off = 1.5;  // of a stress of norm 1: everything is rounding
+  v.iterates[1].norms.round_off = 1.5;  // the stress has norm 1: everything is rounding
   EXPECT_EQ(app::violation(v), "");
 }
 
@@ -87,7 +87,7 @@ certify::EnergyBound with_interval(double value, double lower, double upper)
   return bound;
 }
 
-/// Intervals of both iterates, the richer solution being in a narrow one.
+/// Intervals of both iterates; the richer solution lies in a narrow interval.
 app::Verification example_with_quantity()
 {
   app::Verification v = example();

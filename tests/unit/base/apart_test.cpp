@@ -105,7 +105,7 @@ TEST(Apart, TheFlagEndsIt)
   EXPECT_FALSE(has_children());
 }
 
-#ifndef __SANITIZE_ADDRESS__  // whose malloc ends the program where others return null
+#ifndef __SANITIZE_ADDRESS__  // its malloc ends the program where others return null
 TEST(Apart, MemoryIsLimited)
 {
   const ApartOutcome outcome = run_apart(

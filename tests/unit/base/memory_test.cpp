@@ -1,5 +1,5 @@
 /// @file memory_test.cpp
-/// Limits of control groups, from files as the system shows them.
+/// Limits of control groups, read from files like those of the system.
 
 #include "tribound/base/memory.h"
 
@@ -54,7 +54,7 @@ TEST_F(ControlGroups, OfVersion2)
 
 TEST_F(ControlGroups, OfVersion1)
 {
-  write("memory/memory.limit_in_bytes", "9223372036854771712");  // what stands for no limit
+  write("memory/memory.limit_in_bytes", "9223372036854771712");  // means no limit
   write("memory/job/memory.limit_in_bytes", "2000000000");
   EXPECT_EQ(limit("5:cpu,memory:/job\n1:pids:/\n0::/"), 2e9);
   EXPECT_GT(limit("5:memory:/"), 1e18);

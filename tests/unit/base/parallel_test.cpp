@@ -37,7 +37,7 @@ TEST(ParallelFor, TheFirstFailureIsTheOneReported)
     }
 }
 
-/// What would come after a failure can be expensive.
+/// Work after a failure could be expensive.
 TEST(ParallelFor, NothingIsStartedBehindAFailure)
 {
   std::vector<int> visits(100, 0);
@@ -51,7 +51,7 @@ TEST(ParallelFor, NothingIsStartedBehindAFailure)
   for (std::size_t i = 0; i < visits.size(); ++i) EXPECT_EQ(visits[i], i <= 10 ? 1 : 0);
 }
 
-/// Terms whose sum depends on the order: sums in blocks differ in the last digits from one in one go.
+/// Terms whose sum depends on the order: summation in blocks changes the last digits.
 TEST(ParallelSum, IsTheSameForAnyNumberOfThreads)
 {
   const int available = omp_get_max_threads();

@@ -9,7 +9,7 @@ namespace tribound
 namespace
 {
 
-/// The examples of FIPS 180-4.
+/// Examples of FIPS 180-4.
 TEST(Sha256, ExamplesOfTheStandard)
 {
   EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

@@ -1,4 +1,4 @@
-// Every way to get a case file wrong, with the message that helps.
+// Every way to get a case file wrong, with its helpful message.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::StartsWith;
 
 const std::string mesh = "mesh.file = 'a.msh'\n";
 const std::string material = "material = {E = 1, nu = 0.3}\n";
-const std::string head = mesh + material;  // the case goes on in line 3
+const std::string head = mesh + material;  // the case continues in line 3
 
 struct BadCase
 {
@@ -301,7 +301,7 @@ std::string name_of(const testing::TestParamInfo<BadCase>& info)
   return info.param.name;
 }
 
-/// toml++ recurses on both.
+/// toml++ recurses on both forms.
 TEST(DeepDocument, IsRefusedBeforeItIsParsed)
 {
   std::string key = "a";

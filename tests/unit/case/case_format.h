@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file case_format.h
-/// The tables of docs/case-format.md. Read are those whose first column is "key" (of the section they stand
-/// in) or "key of `...`" (of the table of that name in it).
+/// The tables of docs/case-format.md. The first column must be "key" (keys of the section) or "key of `...`"
+/// (keys of the table of that name in the section).
 
 #include <algorithm>
 #include <fstream>
@@ -38,7 +38,7 @@ inline std::vector<std::string> split_cells(const std::string& line)
   return cells;
 }
 
-/// What stands in backquotes: "`lower`, `upper`" gives lower and upper.
+/// The words in quotes: with backquotes, "`lower`, `upper`" gives lower and upper.
 inline std::vector<std::string> quoted(const std::string& text, const std::string& quote)
 {
   const std::regex pattern(quote + "([^" + quote + "]*)" + quote);
@@ -48,8 +48,8 @@ inline std::vector<std::string> quoted(const std::string& text, const std::strin
   return words;
 }
 
-/// The table a section is about: "## [boundary.NAME]" is tried out on the boundary "top", "## [[contact]]" on
-/// the first one, obstacles and shapes on one called "o".
+/// The table that a section describes. "## [boundary.NAME]" is tried out on the boundary "top",
+/// "## [[contact]]" on the first contact, obstacles and shapes on one called "o".
 inline std::string section_table(const std::string& heading)
 {
   const auto open = heading.find('[');
@@ -60,7 +60,7 @@ inline std::string section_table(const std::string& heading)
   return table == "boundary.NAME" ? "boundary.top" : table;
 }
 
-/// All of them; those of an interface, which has no section of its own, in the table "interface".
+/// All documented keys. Those of an interface, which has no section of its own, are in the table "interface".
 inline std::vector<Row> all_documented_keys()
 {
   std::ifstream stream(TRIBOUND_DOCS "/case-format.md");
@@ -85,7 +85,7 @@ inline std::vector<Row> all_documented_keys()
     }
     if (!columns[0].starts_with("key") || line.starts_with("|---")) continue;
     const auto standard = std::ranges::find(columns, "default") - columns.begin();
-    // The lowest degree of the valid case stands for what a key says of `degree`.
+    // The valid case has degree 1: replaces `degree` as a lower limit.
     const std::string type = std::regex_replace(cells[1], std::regex("from `degree` "), "1 ");
     for (const std::string& key : quoted(cells[0], "`"))
       rows.push_back({table, key, type, standard < std::ssize(columns) ? cells[standard] : ""});
@@ -93,7 +93,7 @@ inline std::vector<Row> all_documented_keys()
   return rows;
 }
 
-/// Those of sections: what goes together in an interface takes more than a value for each key.
+/// The documented keys of sections. Keys of an interface depend on each other and cannot be tried one by one.
 inline std::vector<Row> documented_keys()
 {
   std::vector<Row> rows = all_documented_keys();

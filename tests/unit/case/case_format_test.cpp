@@ -1,6 +1,6 @@
 // The tables of docs/case-format.md against the program: keys, words, ranges and defaults cannot drift apart.
 //
-// A key's type says how it is tried out; see try_out().
+// The type of a key decides how it is tried out; see try_out().
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ namespace tribound::test
 namespace
 {
 
-/// A valid case; the contact of the boundary "top" is there only where its keys are tried out.
+/// A valid case. The boundary "top" has contact only when its keys are tried out.
 std::string valid_case(const std::string& table)
 {
   std::string text =
@@ -47,7 +47,7 @@ std::string valid_case(const std::string& table)
   return text;
 }
 
-/// What must be set beside a key so that it is allowed.
+/// Other settings that a key needs to be allowed.
 std::vector<std::string> companions(const Row& row)
 {
   if (row.key == "threshold") return {row.table + ".friction=tresca"};
@@ -65,7 +65,7 @@ std::vector<std::string> companions(const Row& row)
   return {};
 }
 
-/// The problem with "key = value" in its place, or nothing if it is accepted.
+/// The error for "key = value" in its place, or nothing if it is accepted.
 std::optional<InputError> refusal(const Row& row, const std::string& value)
 {
   std::vector<std::string> overrides = {row.name() + "=" + value};
@@ -99,7 +99,7 @@ void expect_refused(const Row& row, const std::string& value)
                                    << row.type << '"';
 }
 
-/// The words of "`"a"`, `"b"`", which must be those the program lists.
+/// The words of "`"a"`, `"b"`" must be those that the program lists.
 void try_out_words(const Row& row)
 {
   const std::vector<std::string> words = quoted(row.type, "\"");
@@ -108,7 +108,7 @@ void try_out_words(const Row& row)
   EXPECT_THAT(quoted(error->hint(), "\""), testing::ElementsAreArray(words)) << row.name();
 }
 
-/// "number > 0", "number in (-1, 0.5)", "integer >= 1", "integer 1 to 4": the ends, and what lies beyond.
+/// "number > 0", "number in (-1, 0.5)", "integer >= 1", "integer 1 to 4": the ends and values beyond them.
 void try_out_numbers(const Row& row)
 {
   std::smatch match;
@@ -143,7 +143,7 @@ void try_out_numbers(const Row& row)
   if (!row.type.starts_with("datum")) expect_refused(row, "\"1 + x - x\"");
 }
 
-/// Tries values that the documented type allows, and values that it does not.
+/// Tries values that the documented type allows and values that it does not.
 void try_out(const Row& row)
 {
   expect_refused(row, "1979-05-27");
@@ -208,7 +208,7 @@ TEST(CaseFormat, TypesAndRangesAreThoseOfTheProgram)
   for (const Row& row : documented_keys()) try_out(row);
 }
 
-/// The keys of a table that the program names when it meets an unknown one.
+/// The keys of a table that the program lists when it meets an unknown key.
 std::set<std::string> allowed_keys(const std::string& table)
 {
   const std::optional<InputError> error = refusal({table, "zzzz", "", ""}, "0");
@@ -234,7 +234,7 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 
-/// 2 000 000 as the tables write it.
+/// 2 000 000, in the notation of the tables.
 std::string with_spaces(long n)
 {
   std::string text = std::to_string(n);
@@ -253,7 +253,7 @@ std::string unlimited(const std::optional<T>& limit, const char* text)
   return limit ? fmt::format("{}", *limit) : text;
 }
 
-/// The default of a key as the tables write it, by the name of the key.
+/// Defaults of keys in the notation of the tables, by name of the key.
 std::map<std::string, std::function<std::string(const case_file::Config&, const Row&)>> defaults()
 {
   const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };

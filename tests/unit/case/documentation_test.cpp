@@ -1,4 +1,4 @@
-// The examples of docs/case-format.md are read by the program they document.
+// The program reads the examples of docs/case-format.md.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(Documentation, EveryExampleIsAValidCase)
   }
 }
 
-/// The cells of a line of a table, without the spaces around them.
+/// The cells of a line of a table, without surrounding spaces.
 std::vector<std::string> cells_of(const std::string& line)
 {
   std::vector<std::string> cells;
@@ -92,7 +92,7 @@ TEST(Documentation, EveryColumnHasAKnownKindOfUnit)
   std::set<std::string> known = {"", "s", "of the quantity", "energy_norm;"};
   for (const auto& [name, what] : problem::unit_names) known.insert(name);
   int n_columns = 0;
-  std::size_t place = 0;  // of the column "unit" in the table at hand
+  std::size_t place = 0;  // of the column "unit" in the current table
   for (const std::string& line : lines_of(TRIBOUND_DOCS "/output.md"))
   {
     const std::vector<std::string> cells =

@@ -1,4 +1,4 @@
-// The case with every --set, as TOML that is read again to the same values.
+// The case with every --set, as TOML that gives the same values when read again.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ bool same(const case_file::Node::Array& a, const case_file::Node::Array& b)
                             [](const case_file::Node& x, const case_file::Node& y) { return same(x, y); });
 }
 
-/// Whatever the order of the keys.
+/// Equality up to the order of keys.
 bool same(const case_file::Node::Table& a, const case_file::Node::Table& b)
 {
   return a.size() == b.size() && std::ranges::all_of(a,
@@ -103,7 +103,7 @@ TEST(EffectiveCase, HoldsWhatWasSetAndWhereResultsGo)
   EXPECT_THAT(config.effective.overrides, testing::ElementsAre("degree=3", "material.E=1"));
 }
 
-/// Read in its place, the effective case is the same, and so is its own effective case.
+/// Read in its place, the effective case gives the same values, and so does its own effective case.
 TEST(EffectiveCase, PathsAreValidFromTheOutputDirectory)
 {
   constexpr auto with_files =

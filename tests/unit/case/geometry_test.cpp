@@ -1,4 +1,4 @@
-// Obstacles, shapes and directions of contact in the case file: what they become, and every mistake.
+// Obstacles, shapes and directions of contact in the case file: their meaning, and every mistake.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,13 +38,13 @@ std::string message(const std::string& text)
   return test::message_of([&] { (void)problem_of<dim>(text); });
 }
 
-/// The contact of boundary b that `keys` make with the given tables.
+/// Contact of boundary b with these keys, and the given tables.
 std::string on_b(const std::string& keys, const std::string& tables)
 {
   return head + "boundary.b.contact = { " + keys + " }\n" + tables;
 }
 
-/// The contact between a and b.
+/// Contact between a and b.
 std::string pair_of(const std::string& keys, const std::string& tables)
 {
   return "mesh.file = 'a.msh'\nmaterial = { E = 1, nu = 0.25 }\n[[contact]]\nslave = 'a'\nmaster = 'b'\n" +
@@ -66,7 +66,7 @@ TEST(Geometry, TheShapeOfTheBodyComesFirst)
   const problem::Problem<2> p =
       problem_of(on_b("obstacle = 'floor', shape = 'hole'", floor_table + hole_table));
   const problem::Contact& contact = *p.boundary(1).contact;
-  const Point<2> x(0.3, 0.06);  // a little inside of the circle around (0, 1)
+  const Point<2> x(0.3, 0.06);  // just inside the circle around (0, 1)
   const double on_circle = 1 - 0.94 / std::hypot(0.3, 0.94);
   EXPECT_NEAR((*contact.gap)(x), on_circle, 1e-14);
   EXPECT_NEAR(std::abs((*contact.true_surface)(x)), 1 - std::hypot(0.3, 0.94), 1e-14);
@@ -102,12 +102,12 @@ TEST(Geometry, PairsHaveTheGapOfTheirTrueShapes)
   EXPECT_NEAR((*contact.gap)(Point<2>(0, 0)), 0, 1e-15);
   EXPECT_NEAR((*contact.gap)(Point<2>(1, 1)), 1.5 - std::hypot(1, 0.5), 1e-14);
   EXPECT_NEAR(((*contact.normal)(Point<2>(1, 1)) - Point<2>(1, -0.5).normalized()).norm(), 0, 1e-14);
-  // Both on one surface: no gap, its normal.
+  // Both sides on one surface: no gap, the normal of the surface.
   const problem::Problem<2> one = problem_of(
       pair_of("shape = 'pin'\n", "[shape.pin]\ncircle = { centre = [0, 1], radius = 1, inside = true }\n"));
   EXPECT_TRUE(one.pairs()[0].contact.gap->is_zero());
   EXPECT_NEAR(((*one.pairs()[0].contact.normal)(Point<2>(0.5, 1)) - Point<2>(1, 0)).norm(), 0, 1e-14);
-  // One alone: its normal, and the gap of the meshes.
+  // Only one side: its normal, and the gap of the meshes.
   const problem::Problem<2> slave =
       problem_of(pair_of("shape = { slave = 'pin' }\n",
                          "[shape.pin]\ncircle = { centre = [0, 1], radius = 1, inside = true }\n"));

@@ -1,4 +1,4 @@
-// Load steps and interfaces with a memory in the case file: what they become, and every mistake.
+// Load steps and history-dependent interfaces in the case file: their meaning, and every mistake.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

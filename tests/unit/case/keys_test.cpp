@@ -1,5 +1,5 @@
-// The keys that the program declares, which are those that the readers read and that `tribound schema`
-// prints, against the tables of docs/case-format.md.
+// The keys that the program declares, against the tables of docs/case-format.md. The readers and
+// `tribound schema` use these keys.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using case_file::Key;
 using case_file::Table;
 using case_file::Value;
 
-/// All tables by name. Those of the same name have the same keys but for what a boundary adds to an
+/// All tables by name. Tables of one name have the same keys, except for those that a boundary adds to an
 /// interface.
 void collect(const Table& table, std::map<std::string, std::map<std::string, Value>>& tables)
 {
@@ -48,7 +48,7 @@ std::map<std::string, std::map<std::string, Value>> declared()
   return tables;
 }
 
-/// The name of a documented table among those of the program.
+/// The program's name of a documented table.
 std::string declared_name(const std::string& documented)
 {
   static const std::map<std::string, std::string> names = {{"boundary.top", "boundary.NAME"},
@@ -80,7 +80,7 @@ Interval documented_interval(const std::string& type)
 void expect_interval(const Row& row, const Interval& declared)
 {
   Interval documented = documented_interval(row.type);
-  // That squares stay numbers is not told of each key.
+  // The limits that keep squares finite are not documented for each key.
   if (row.type.starts_with("datum"))
   {
     documented.upper = case_file::reasonable.upper;
@@ -93,7 +93,7 @@ void expect_interval(const Row& row, const Interval& declared)
   EXPECT_EQ(declared.includes_upper, documented.includes_upper || declared.includes_upper) << row.name();
 }
 
-/// The forms that the documented type names, and no others.
+/// The declared forms must be exactly those of the documented type.
 void expect_type(const Row& row, const Value& value)
 {
   const auto names = [&](const char* words) { return std::regex_search(row.type, std::regex(words)); };
@@ -116,8 +116,8 @@ TEST(Keys, AreThoseOfTheDocumentation)
 {
   std::map<std::string, std::set<std::string>> documented;
   for (const Row& row : all_documented_keys()) documented[declared_name(row.table)].insert(row.key);
-  // Sections are the tables of the case; short tables are told with their key, and a region has the keys of
-  // all.
+  // Sections are the tables of the case. Short tables are documented with their key, and a region has the
+  // keys of all.
   for (const auto& [name, keys] : declared())
   {
     if (name.empty() || !documented.contains(name)) continue;

@@ -90,7 +90,7 @@ TEST(Lame, FollowsTheFormulas)
 
 TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
 {
-  // sigma_xx = E eps_xx while sigma_yy = 0, that is eps_yy = -nu eps_xx.
+  // sigma_xx = E eps_xx and sigma_yy = 0, that is eps_yy = -nu eps_xx.
   const double E = 2.1;
   const double nu = 0.3;
   const auto [lambda, mu, plane] = problem::lame(E, nu, problem::PlaneModel::stress);

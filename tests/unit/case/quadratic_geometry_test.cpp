@@ -1,4 +1,4 @@
-// A shape given by the second-order facets of the mesh: what it becomes, enclosures, and every mistake.
+// A shape given by the second-order facets of the mesh: its meaning, enclosures, and every mistake.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,21 +24,21 @@ namespace
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Of the lower side, y.
+/// y of the lower side.
 template <int dim>
 double height(const Point<dim>& x)
 {
   return 0.5 * x[0] * x[0] + (dim == 3 ? 0.2 * x[0] * x[2 % dim] : 0);
 }
 
-/// The same of the upper side of the block below.
+/// y of the upper side of the block below.
 template <int dim>
 double depth(const Point<dim>& x)
 {
   return -0.5 - 0.3 * x[0] * x[0] - (dim == 3 ? 0.1 * x[2 % dim] * x[2 % dim] : 0);
 }
 
-/// A block of which the lower side is bent, and another below it with a bent upper side; of order 2 or 1.
+/// A block with a bent lower side, above one with a bent upper side; a mesh of order 2 or 1.
 template <int dim>
 mesh::Mesh<dim> bent_block(int order = 2)
 {
@@ -114,7 +114,7 @@ TEST(QuadraticGeometry, GapAndDirectionAreThoseOfTheCurve)
   const Point<2> x(-0.1, (height<2>({-1.0 / 3, 0}) + height<2>({1.0 / 3, 0})) / 2);  // on the middle facet
   EXPECT_NEAR((*contact.gap)(x), height(x), 1e-15);
   EXPECT_NEAR(((*contact.normal)(x)-Point<2>(0, -1)).norm(), 0, 1e-15);
-  // The facet lies inside of the body.
+  // The facet lies inside the body.
   EXPECT_LT((*contact.true_surface)(x), 0);
   EXPECT_NEAR((*contact.true_surface)(x), height(x) - x[1], 1e-3);
 
@@ -123,8 +123,7 @@ TEST(QuadraticGeometry, GapAndDirectionAreThoseOfTheCurve)
   EXPECT_NEAR(((*own.boundary(2).contact->normal)(x)-Point<2>(-0.1, -1).normalized()).norm(), 0, 0.01);
 }
 
-/// Of a curved obstacle, by intervals: over parts of facets the values, and Taylor's coefficients by
-/// differences.
+/// Checks enclosures over parts of facets: values, and Taylor coefficients by differences.
 template <int dim>
 void expect_enclosed(const problem::Field& field, const mesh::Mesh<dim>& mesh)
 {
@@ -218,7 +217,7 @@ TEST(QuadraticGeometry, SlavesOfPairsHaveIt)
       problem_of(pair_of("shape = { slave = 'foot', master = 'bore' }\n", shape_table + bore));
   const Point<2> x(-0.1, (height<2>({-1.0 / 3, 0}) + height<2>({1.0 / 3, 0})) / 2);
   EXPECT_NEAR((*p.pairs()[0].contact.gap)(x), height(x) + 0.25, 1e-15);
-  // Both sides on it: no gap, its normal; of the facets of the slave.
+  // Both sides on the shape: no gap, its normal, from the facets of the slave.
   const problem::Problem<2> one = problem_of(pair_of("shape = 'foot'\n", shape_table));
   EXPECT_TRUE(one.pairs()[0].contact.gap->is_zero());
   EXPECT_NEAR(((*one.pairs()[0].contact.normal)(x)-Point<2>(-0.1, -1).normalized()).norm(), 0, 0.01);
@@ -227,7 +226,7 @@ TEST(QuadraticGeometry, SlavesOfPairsHaveIt)
   EXPECT_TRUE(slave.pairs()[0].contact.normal);
 }
 
-/// By samples: of the distance of `from` from the upper side of the block below, which is above it.
+/// The distance of `from` from the upper side of the block below, by sampling.
 template <int dim>
 double sampled_distance(const Point<dim>& from)
 {
@@ -253,7 +252,7 @@ Point<dim> on_bottom_of(const mesh::Mesh<dim>& mesh)
   return Point<dim>::Zero();
 }
 
-/// Alone, below another mesh of order 2, and below formulas.
+/// The distance from the master alone, below another mesh of order 2, and below formulas.
 template <int dim>
 void expect_distances_from_master()
 {

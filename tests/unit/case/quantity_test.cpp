@@ -1,5 +1,5 @@
 /// @file quantity_test.cpp
-/// [[quantity]] and what the case does with it: what is read, and what a user is told.
+/// [[quantity]] in a case: what is read, and what a user is told.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace
 
 using ::testing::HasSubstr;
 
-/// A block on a floor with friction, and more of a case file.
+/// A block on a floor with friction, plus the given text of a case file.
 case_file::Config config(const std::string& text)
 {
   return case_file::parse_config(R"(

@@ -1,5 +1,5 @@
 /// @file cone_test.cpp
-/// The projection of a vector on the polar of a cone, by its defining properties.
+/// The projection of a vector onto the polar of a cone, by its defining properties.
 
 #include "tribound/contact/support/cone.h"
 

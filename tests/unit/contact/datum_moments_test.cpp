@@ -39,7 +39,7 @@ contact::SimplexMap<k, dim> simplex(double length)
   return map;
 }
 
-/// The scalar formula as component 0.
+/// The scalar formula in component 0.
 template <int k, int dim>
 contact::DatumOnSimplex<k, dim> looked_into(const problem::Field& f, double length, double allowed, int p = 2,
                                             int parts = 4096)
@@ -48,7 +48,7 @@ contact::DatumOnSimplex<k, dim> looked_into(const problem::Field& f, double leng
   return moments({{{&f, Point<dim>::Unit(0)}}}, simplex<k, dim>(length), weights, allowed, parts);
 }
 
-/// The integral over the simplex: theta_0 is the root of k!, the reciprocal of its measure.
+/// The integral over the simplex. theta_0 is the square root of k!, the reciprocal of its measure.
 template <int k, int dim>
 double integral(const contact::DatumOnSimplex<k, dim>& found, double length)
 {
@@ -66,7 +66,7 @@ TEST(DatumMoments, PolynomialsAreLeftToTheRule)
   EXPECT_LE((looked_into<2, 2>(formula("3*x - y"), 1, 0).oscillation), 1e-15);
 }
 
-/// int_0^1 (f - Pi^1 f)^2 of the step at a: a (1 - a) - 3 a^2 (1 - a)^2.
+/// int_0^1 (f - Pi^1 f)^2 for a step at a: a (1 - a) - 3 a^2 (1 - a)^2.
 TEST(DatumMoments, StepsAreCutExactly)
 {
   for (const double a : {0.003, 0.26, 0.5, 0.999})
@@ -88,7 +88,7 @@ TEST(DatumMoments, StripsBetweenThePointsOfTheRuleAreSeen)
 
 TEST(DatumMoments, PlanesCutTetrahedra)
 {
-  // x + y + z < 1/2 on the unit tetrahedron: 1/8 of it; with x < 0.2 beside it.
+  // x + y + z < 1/2 is 1/8 of the unit tetrahedron; then a slab with x < 0.2.
   const auto corner = looked_into<3, 3>(formula("x + y + z < 0.5 ? 8 : 0"), 1, 0, 1);
   EXPECT_NEAR((integral<3, 3>(corner, 1)), 1.0 / 6, 1e-15);
   EXPECT_LE(corner.mean, 1e-15);
@@ -128,8 +128,7 @@ TEST(DatumMoments, SmoothFormulasNeedNoParts)
   EXPECT_LE(found.mean, 1e-10);
 }
 
-/// The quarter of a disc and an eighth of a ball: the remainder holds what is missed, and the more parts the
-/// less of it.
+/// A quarter of a disc and an eighth of a ball. The remainder bounds the error and shrinks with more parts.
 TEST(DatumMoments, CurvedStepsLeaveARest)
 {
   double last = 1;
@@ -159,7 +158,7 @@ TEST(DatumMoments, WhatCannotBeBoundedIsRefused)
   }
 }
 
-/// Values between 4 and 333, but intervals see that on small parts only, however few are worth it.
+/// Values between 4 and 333. Intervals show that on small parts only, even if few parts are worth the effort.
 TEST(DatumMoments, ABoundedFormulaIsNotRefusedForTheEffort)
 {
   for (const int parts : {64, 406, 4096})
@@ -172,7 +171,7 @@ TEST(DatumMoments, ABoundedFormulaIsNotRefusedForTheEffort)
   }
 }
 
-/// More switches than parts: those that are not cut leave a rest.
+/// More switches than parts: those that are not cut leave a remainder.
 TEST(DatumMoments, ManySwitchesAreCutUpToALimit)
 {
   std::string text = "0";
@@ -180,7 +179,7 @@ TEST(DatumMoments, ManySwitchesAreCutUpToALimit)
     text += " + (" + std::to_string(i) + "*x + y < " + std::to_string(0.4 * i) + ")";
   const auto found = looked_into<2, 2>(formula(text), 1, 0, 2, 256);
   EXPECT_LE(found.parts.size(), 2048U);
-  double exact = 0;  // of i x + y < 0.4 i in the triangle, by a fine sum
+  double exact = 0;  // areas of i x + y < 0.4 i in the triangle, by a fine sum
   constexpr int n = 20000;
   for (int i = 1; i < 200; ++i)
     for (int j = 0; j < n; ++j)

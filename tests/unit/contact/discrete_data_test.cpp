@@ -1,5 +1,5 @@
 /// @file discrete_data_test.cpp
-/// Data that jump exactly where a boundary is.
+/// Data that jump exactly at a boundary.
 
 #include "tribound/contact/nitsche/discrete_data.h"
 
@@ -18,7 +18,7 @@ namespace tribound::test
 namespace
 {
 
-/// The sum of component 1 of the load.
+/// The sum of component 1 of the load vector.
 template <int dim>
 double vertical_load(const contact::NitscheForm<dim>& form)
 {
@@ -27,8 +27,7 @@ double vertical_load(const contact::NitscheForm<dim>& form)
   return sum;
 }
 
-/// One formula for the whole boundary chooses the side y = 0.1: its facets are loaded fully, whatever the
-/// vertex opposite is.
+/// A formula selects the side y = 0.1: its facets are fully loaded, whatever the opposite vertex is.
 TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
 {
   for (unsigned seed = 0; seed < 20; ++seed)
@@ -47,7 +46,7 @@ TEST(DiscreteData, ASideInThePlaneOfASwitchIsLoadedFully)
   }
 }
 
-/// On an inclined plane the points are on either side, as rounding wants: the remainders hold both decisions.
+/// On an inclined plane, rounding puts the points on either side: the remainders cover both decisions.
 TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
 {
   const auto inclined = [](const Point<2>& x) { return Point<2>(x[0], x[1] + 0.1 + 0.5 * x[0]); };
@@ -71,7 +70,8 @@ TEST(DiscreteData, ASwitchThatRoundingDecidesIsLeftToTheBound)
   }
 }
 
-/// A press fit without loads: its interference says what is negligible, as a prescribed displacement would.
+/// A press fit without loads: its interference sets the scale of what is negligible, like a prescribed
+/// displacement.
 TEST(DiscreteData, AnInterferenceIsAnEffect)
 {
   const auto density = [](const std::string& gap, double displacement)
@@ -85,11 +85,11 @@ TEST(DiscreteData, AnInterferenceIsAnEffect)
   const double displaced = density("0.01*exp(x)", 0.01 * std::exp(1));
   EXPECT_GT(displaced, 0);
   EXPECT_NEAR(density("-0.01*exp(x)", 0), displaced,
-              0.05 * displaced);  // seen at points inside of the facets
+              0.05 * displaced);  // seen at points inside the facets
 }
 
-/// A gap is looked into as finely as its stress gamma g asks: neither more for a material that is nearly
-/// incompressible, where gamma is limited, nor less for a large gamma_0.
+/// A gap is resolved as finely as its stress gamma g requires: not more for a nearly incompressible material,
+/// where gamma is limited, and not less for a large gamma_0.
 TEST(DiscreteData, GapsAreResolvedForThePenaltyInUse)
 {
   const auto parts = [](double nu, std::optional<double> gamma0)

@@ -1,6 +1,6 @@
 /// @file discrete_gap_test.cpp
-/// Gaps that the rules do not integrate: nothing touches where nothing does, and all that is told of contact
-/// is of one traction.
+/// Gaps that the rules do not integrate exactly. There is no spurious contact, and all that is reported of
+/// contact comes from one traction.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ DiscreteProblem<dim> above(const std::string& gap, int degree)
           {.degree = degree}};
 }
 
-/// The polynomials with the moments of these gaps are negative beside the kink or the jump.
+/// The polynomials with the moments of these gaps are negative near the kink or the jump.
 template <int dim>
 void expect_no_touch()
 {
@@ -46,7 +46,7 @@ TEST(DiscreteGap, NothingTouchesWhereNothingDoes)
   expect_no_touch<3>();
 }
 
-/// Where the gap is limited its mean stays that of the formula.
+/// Where the gap is limited, its mean remains that of the formula.
 TEST(DiscreteGap, HasTheMeanOfTheFormula)
 {
   const DiscreteProblem<2> c = above<2>("max(0, x-0.61)", 2);

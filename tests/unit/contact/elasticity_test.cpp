@@ -1,5 +1,5 @@
 /// @file elasticity_test.cpp
-/// Stiffness and loads against Hooke's law in its inverse form and against integrals in closed form.
+/// Stiffness and loads, against the inverse form of Hooke's law and integrals in closed form.
 
 #include "tribound/contact/nitsche/elasticity.h"
 
@@ -34,8 +34,8 @@ mesh::MeshData<dim> grid()
 const problem::Material plane_strain = lame(E, nu);
 const problem::Material plane_stress = lame(E, nu, problem::PlaneModel::stress);
 
-/// eps from sigma: in 3D and for plane stress (1+nu)/E sigma - nu/E tr(sigma) I, for plane strain with
-/// sigma_zz = nu tr(sigma) added to the trace.
+/// eps from sigma: (1+nu)/E sigma - nu/E tr(sigma) I in 3D and plane stress; in plane strain
+/// sigma_zz = nu tr(sigma) is added to the trace.
 template <int dim>
 Tensor<dim> strain(const Tensor<dim>& stress, bool is_plane_strain)
 {
@@ -131,8 +131,8 @@ TYPED_TEST(Stiffness, FixedDegreesOfFreedomHaveAPositiveDiagonalOnly)
   EXPECT_EQ(n_diagonal, std::ranges::count(constraints.fixed, 1));
 }
 
-/// Rows of a node have the same columns, whole blocks of them, as PETSc's GAMG likes them; nodes without a
-/// free component have their own block alone.
+/// The rows of a node have the same columns, in whole blocks, as PETSc's GAMG prefers. Nodes without a free
+/// component have only their own block.
 TYPED_TEST(Stiffness, ConsistsOfWholeBlocks)
 {
   constexpr int dim = TypeParam::value;

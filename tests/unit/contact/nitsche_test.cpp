@@ -60,8 +60,8 @@ DiscreteProblem<dim> held_block(int p, const problem::ContactLaw& law, unsigned 
           {.degree = p}};
 }
 
-/// Everything in `status` with a margin: pushed into the obstacle below (or pulled off it) and aside, in 3D
-/// across the coordinate axes, and shaken a little.
+/// Displacements with all points safely in `status`: pushed into the obstacle below (or pulled off it) and
+/// sideways, in 3D oblique to the axes, with a small random perturbation.
 template <int dim>
 std::vector<double> displaced(const DiscreteProblem<dim>& c, problem::ContactStatus status, unsigned seed)
 {
@@ -136,7 +136,7 @@ void expect_tangent_agrees_with_differences(int p, const Law& law, problem::Cont
   const std::vector<double> whole_by_difference =
       difference([&](const std::vector<double>& v) { return residual(c, v); });
   EXPECT_LE(distance(whole, whole_by_difference), 1e-7 * norm(whole));
-  // A threshold does not fall with the pressure: Tresca's tangent lives on open contact, too.
+  // The threshold does not depend on the pressure: Tresca's tangent is non-zero on open contact, too.
   const bool is_zero = status == problem::ContactStatus::open && law.name != "tresca";
   EXPECT_EQ(norm(contact) == 0, is_zero);
 }
@@ -225,7 +225,7 @@ TEST(NitscheForm, WithAnotherGammaIsThatMadeWithIt)
   EXPECT_LE(norm(sum(tangent, -1, expected_tangent)), 1e-13 * norm(expected_tangent));
 }
 
-/// T_delta has no kinks: its tangent is its derivative wherever u is, on either side of them and between.
+/// T_delta has no kinks: its tangent is its derivative for every u, on either side of the kinks and between.
 template <int dim>
 void expect_regularised_tangent_agrees(const Law& law, double delta)
 {

@@ -1,5 +1,5 @@
 /// @file pairing_test.cpp
-/// Overlays of boundaries that do not match: what is covered, by what, and what is refused.
+/// Overlays of non-matching boundaries: what is covered, by what, and what is refused.
 
 #include "tribound/contact/pairing/pairing.h"
 
@@ -39,7 +39,7 @@ mesh::MeshData<dim> slab(double first, double last, double bottom, double top,
   return box<dim>(lower, upper, cells);
 }
 
-/// A box above another, the lower one from `first` to `last`.
+/// A box above another one; the lower one extends from `first` to `last`.
 template <int dim>
 mesh::MeshData<dim> two_slabs(const std::array<int, dim>& cells_above,
                               const std::array<int, dim>& cells_below, double first, double last)
@@ -100,7 +100,7 @@ double integral(const mesh::Mesh<dim>& mesh, const std::vector<contact::FacetPai
   return sum;
 }
 
-/// What corners are apart, beside a multiple of e (per pair: the slave's normal if it is 0).
+/// The distance between corners, apart from a multiple of e (the slave's normal of each pair if e is 0).
 template <int dim>
 double largest_deviation(const mesh::Mesh<dim>& mesh, const std::vector<contact::FacetPair<dim>>& pairs,
                          const Point<dim>& direction)
@@ -125,7 +125,7 @@ class PairingTest : public ::testing::Test
 };
 TYPED_TEST_SUITE(PairingTest, Dimensions);
 
-/// Moments to degree 11 of what is covered, turned and partly covered, both sides numbered at random.
+/// Moments up to degree 11 of the covered part; boxes turned and partly covered, numbered at random.
 TYPED_TEST(PairingTest, CoversEveryPointOnce)
 {
   constexpr int dim = TypeParam::value;
@@ -159,7 +159,7 @@ TYPED_TEST(PairingTest, CoversEveryPointOnce)
   }
 }
 
-/// Planes that are not parallel: the measures of both sides have the ratio of the planes.
+/// Non-parallel planes: the measures of both sides have the ratio that the planes give.
 TYPED_TEST(PairingTest, ProjectsOnInclinedPlanes)
 {
   constexpr int dim = TypeParam::value;
@@ -189,7 +189,7 @@ TYPED_TEST(PairingTest, ProjectsOnInclinedPlanes)
   }
 }
 
-/// Five sixths of two rings, one in the other: what faces the slave from across the hole is no partner.
+/// Five sixths of two rings, one inside the other: facets facing the slave across the hole are no partners.
 TYPED_TEST(PairingTest, CurvedBoundariesMeetTheirOwnSide)
 {
   constexpr int dim = TypeParam::value;
@@ -225,13 +225,13 @@ TYPED_TEST(PairingTest, CurvedBoundariesMeetTheirOwnSide)
     double whole = 0;
     for (const std::size_t number : slave)
       whole += area<dim>(mesh, {number, fem::reference_simplex<dim - 1>()});
-    // At both ends of the slave a normal, half a chord from the end, passes the master by.
+    // At each end of the slave, a normal half a chord from the end misses the master.
     EXPECT_LE(covered, whole * (1 + 1e-12));
     EXPECT_GE(covered, whole - 1.1 * distance * chord / 1.5);
   }
 }
 
-/// Facets that coincide but for rounding; what is moved further leaves slivers, which do no harm.
+/// Facets that coincide up to rounding; larger shifts leave slivers, which do no harm.
 TYPED_TEST(PairingTest, MatchingFacetsAreOneSegment)
 {
   constexpr int dim = TypeParam::value;
@@ -253,7 +253,7 @@ TYPED_TEST(PairingTest, MatchingFacetsAreOneSegment)
   }
 }
 
-/// A plate of half the width in front of the lower body hides a part of it.
+/// A plate of half the width in front of the lower body hides part of it.
 TYPED_TEST(PairingTest, TheNearestFacetIsThePartner)
 {
   constexpr int dim = TypeParam::value;
@@ -283,7 +283,7 @@ TYPED_TEST(PairingTest, TheNearestFacetIsThePartner)
   EXPECT_TRUE(overlay<dim>(mesh, {}).empty());
 }
 
-/// One facet in front and one behind, whose order changes, or which are equally far.
+/// One facet in front and one behind; their order changes, or they are equally far away.
 TYPED_TEST(PairingTest, AnAmbiguousPairingIsRefused)
 {
   constexpr int dim = TypeParam::value;
@@ -310,7 +310,7 @@ TYPED_TEST(PairingTest, AnAmbiguousPairingIsRefused)
     EXPECT_NE(message.find("reach"), std::string::npos);
     EXPECT_TRUE(pair(0.7).empty());
     EXPECT_FALSE(overlay<dim>(mesh, {"top_below"}).empty());
-    // What a plate hides may lie as it likes.
+    // What a plate hides may lie anywhere.
     const auto pairs = overlay<dim>(mesh, {"top_below", "top_above", "top_plate"});
     EXPECT_NEAR(integral<dim>(mesh, pairs, [](const Point<dim>&) { return 1.0; }), 1, 1e-8);
   }
@@ -331,7 +331,7 @@ TYPED_TEST(PairingTest, DirectionsPointOutOfTheSlave)
   }
 }
 
-/// A plane that faces the slave and turns its back on the direction.
+/// A plane that faces the slave but not the direction.
 TYPED_TEST(PairingTest, PartnersFaceTheDirection)
 {
   constexpr int dim = TypeParam::value;
@@ -350,7 +350,7 @@ TYPED_TEST(PairingTest, PartnersFaceTheDirection)
   EXPECT_FALSE(overlay<dim>(mesh, {"top_below"}, {.direction = e}).empty());
 }
 
-/// Numbers of segments of the independent prototype.
+/// Segment counts of the independent prototype.
 TEST(Pairing, HasAsManySegmentsAsThePrototype)
 {
   const auto in_2d = [](int above, int below)

@@ -1,5 +1,5 @@
 /// @file rigid_motion_assembly_test.cpp
-/// Rigid motions of bodies that pairs join, and the balance of their loads.
+/// Rigid motions of bodies joined by pairs, and the balance of their loads.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// (0.4, 1.6) x (1, 2) on (0, 2) x (0, 1), in 3D 1 deep.
+/// (0.4, 1.6) x (1, 2) on (0, 2) x (0, 1); in 3D the depth is 1.
 template <int dim>
 mesh::MeshData<dim> two_blocks()
 {
@@ -41,7 +41,7 @@ mesh::MeshData<dim> two_blocks()
   return data;
 }
 
-/// A third block of the size of the upper one above it.
+/// A third block above the upper one, of the same size.
 mesh::MeshData<2> three_blocks()
 {
   return side_by_side(two_blocks<2>(), box<2>({0.4, 2.2}, {1.6, 3.2}, {1, 2}), "_top");
@@ -94,8 +94,8 @@ TEST(RigidMotionOfAssemblies, ABodyInNoPairStandsAlone)
       HasSubstr("nothing stops the body around (1, 2.7) (region \"box_top\") from: translation"));
 }
 
-/// Number of motions that closed and sticking contact leaves, and of zero singular values of the matrix of
-/// the first Newton step.
+/// The number of motions that closed and sticking contact leaves free, and the number of zero singular values
+/// of the matrix of the first Newton step.
 template <int dim>
 std::pair<int, int> free_motions(const mesh::MeshData<dim>& mesh, const ProblemData<dim>& data)
 {
@@ -131,8 +131,8 @@ std::pair<int, int> free_motions(const mesh::MeshData<dim>& mesh, const ProblemD
   return {motions, static_cast<int>((values.array() < 1e-11 * values[0]).count())};
 }
 
-/// The kernel of the first matrix, by a way that knows nothing of rigid motions. Frictionless contact sticks
-/// in no direction there.
+/// The kernel of the first matrix is found without knowledge of rigid motions. Frictionless contact does not
+/// stick in that matrix.
 TEST(RigidMotionOfAssemblies, WhatIsFreeIsTheKernelOfTheFirstMatrix)
 {
   const auto agree = [](const auto& mesh, const auto& data, int expected)
@@ -185,7 +185,7 @@ TEST(RigidMotionOfAssemblies, ContactPassesPressureOnButNoTension)
   EXPECT_THAT(loaded_by(0.101, -1, Tresca(0.1)), HasSubstr("the friction threshold takes up only 99 % of"));
 }
 
-/// A load on the side of the top tips the whole stack before it tips the upper block.
+/// A lateral load at the top tips the whole stack before it tips the upper block.
 TEST(RigidMotionOfAssemblies, MomentsActThroughTheWholeStack)
 {
   const auto pushed = [](double x, const problem::ContactLaw& law)
@@ -201,7 +201,7 @@ TEST(RigidMotionOfAssemblies, MomentsActThroughTheWholeStack)
   EXPECT_THAT(pushed(0.5005, Coulomb(5)), HasSubstr("contact only pushes"));
 }
 
-/// A tie across a distance keeps the points opposite: bodies turn about centres that lie as far apart.
+/// A tie across a distance keeps the points opposite each other: bodies turn about centres as far apart.
 TEST(RigidMotionOfAssemblies, ATieAcrossADistanceIsNoBond)
 {
   const std::string said = verdict<2>(three_blocks(), {.boundaries = {clamped<2>("bottom")},

@@ -1,5 +1,5 @@
 /// @file rigid_motion_contact_test.cpp
-/// What contact holds, with every law, by geometry and by friction.
+/// What contact can hold with every law, by geometry and by friction.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(RigidMotion, BlockPulledOffTheFloor)
 
 TEST(RigidMotion, BlockTippedOverItsEdge)
 {
-  // down 2 in the middle of [0, 2], up at the right end: the resultant acts left of the block
+  // 2 downwards in the middle of [0, 2], and upwards at the right end: the resultant acts left of the block
   const std::string said = verdict<2>(
       block(), {loaded<2>("top", 0, -1), loaded<2>("right", 0, 1.5), obstacle<2>("bottom", Coulomb(5))});
   EXPECT_THAT(said, HasSubstr("drive it into rotation about (0, 0)"));
@@ -65,7 +65,7 @@ TEST(RigidMotion, BlockTippedOverItsEdge)
 
 TEST(RigidMotion, BlockPushedHighTipsBeforeItSlides)
 {
-  // A side load on top of a block of weight 2, 2 wide and 1 high, tips it from 2 on, and makes it slide from
+  // A side load on top of a block of weight 2, width 2 and height 1 tips it from 2 on and makes it slide from
   // 4 on.
   const auto pushed = [](double load) {
     return verdict<2>(block(), {loaded<2>("top", load, 0), obstacle<2>("bottom", Coulomb(2))}, {0, -1});
@@ -96,7 +96,7 @@ TEST(RigidMotion, CoulombConeIn3DIsRound)
   EXPECT_THAT(slope(angle, std::tan(angle) * 0.999), HasSubstr("friction is too weak"));
 }
 
-/// Loads beyond the cone by a thousandth, in directions between the edges of a polyhedron around it.
+/// Loads a thousandth beyond the cone, in directions between the edges of a polyhedron around it.
 TEST(RigidMotion, CoulombIn3DRefusesWhatTheRoundConeDoesNotHold)
 {
   constexpr double coefficient = 0.5;
@@ -141,7 +141,7 @@ TEST(RigidMotion, TrescaThresholdTooSmallForTheSideLoad)
                                        "only 50 % of their work in it"));
 }
 
-/// Strips of friction between the points of the rule hold as much as their width makes of them.
+/// Strips of friction between the points of the rule hold a force in proportion to their width.
 TEST(RigidMotion, TrescaOnANarrowStripCounts)
 {
   const auto pulled = [](const std::string& from, double threshold)
@@ -180,7 +180,7 @@ TEST(RigidMotion, TrescaIn3DAgainstTheDirectionOfTheLoad)
   EXPECT_THAT(pushed(0.0706), HasSubstr("translation along (0.7071, 0, 0.7071)"));
 }
 
-/// The body can only move along x, off its inclined floor, and only Tresca friction resists that.
+/// The body can only move along x, off its inclined floor; only Tresca friction resists.
 TEST(RigidMotion, TrescaTooWeakAgainstAPullOffTheFloor)
 {
   const double angle = 0.3;
@@ -195,7 +195,7 @@ TEST(RigidMotion, TrescaTooWeakAgainstAPullOffTheFloor)
   EXPECT_THAT(pulled(0.003), HasSubstr("takes up only 2.87 % of"));
 }
 
-/// An L of three squares, foot to the right; frictionless obstacles around it.
+/// An L of three squares with the foot to the right, and frictionless obstacles around it.
 mesh::MeshData<2> hook()
 {
   mesh::MeshData<2> data = box<2>({0, 0}, {2, 2}, {2, 2});
@@ -225,7 +225,7 @@ TEST(RigidMotion, HookIsHeldByGeometryAlone)
   };
   EXPECT_EQ(pushed_from_the_left(1), "held");
   EXPECT_THAT(pushed_from_the_left(-1), HasSubstr("contact cannot hold the body"));
-  // A foot on the floor and its upper side under a ledge: two-sided, holds up and down and against turning.
+  // A foot on the floor, with its upper side under a ledge: held up, down and against rotation.
   EXPECT_EQ(
       verdict<2>(hook(), {obstacle<2>("bottom"), obstacle<2>("step"), fixed<2>("left", 0, free)}, {0, 1}),
       "held");

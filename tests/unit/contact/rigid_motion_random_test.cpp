@@ -17,8 +17,8 @@ namespace tribound::test
 namespace
 {
 
-/// The box with a condition on each side, or two of them, one in contact with the other, turned, so that no
-/// side is parallel to an axis.
+/// A box with a condition on each side, or two boxes in contact with each other; turned, so that no side is
+/// parallel to an axis.
 template <int dim>
 struct RandomCase
 {
@@ -82,7 +82,7 @@ struct RandomCase
     return mapped<dim>(bodies, [&](const Point<dim>& x) -> Point<dim> { return turn * x; });
   }
 
-  /// A traction that contact can exert, often one of the largest.
+  /// A traction that contact can exert, often a largest one.
   Point<dim> traction(const problem::ContactLaw& law, const contact::ContactPoint<dim>& point)
   {
     const Point<dim>& n = point.normal;
@@ -112,7 +112,7 @@ void never_refused(int n_cases, bool two)
     RandomCase<dim> any{two, std::mt19937(i)};
     const ProblemData<dim> data = any.problem();
     const DiscreteProblem<dim> c(any.mesh(), data);
-    // On a third of the cases all friction pulls in one direction as hard as it can.
+    // In a third of the cases all friction pulls in one direction as hard as it can.
     const Point<dim> pull = Point<dim>::Random();
     std::vector<Point<dim>> t;
     for (const contact::ContactPoint<dim>& point : c.form.contact_points())

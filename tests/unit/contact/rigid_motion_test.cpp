@@ -1,5 +1,5 @@
 /// @file rigid_motion_test.cpp
-/// What displacement conditions hold, and the words for the motions of bodies that are not held.
+/// What displacement conditions hold, and how motions of unsupported bodies are described.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(RigidMotion, SlidersThroughAPointLeaveTheRotationAboutIt)
               HasSubstr("from: rotation about the axis through (0, 0, 0.5) along (0, 0, 1)\n"));
 }
 
-/// A component normal to a side without load, each named once.
+/// A component normal to an unloaded side; each is named once.
 TEST(RigidMotion, NamesAComponentThatWouldStopTheMotion)
 {
   EXPECT_THAT(verdict<2>(block(), {loaded<2>("left", 1, 0), loaded<2>("top", 0, 1)}),
@@ -69,7 +69,7 @@ TEST(RigidMotion, WordsForAScrew)
 {
   const contact::RigidModes<3> modes{.centre = {0, 0, 0}, .size = 2};
   contact::RigidModes<3>::Coefficients motion;
-  motion << 1, 0, 3, 0, 0, 1;  // about the vertical axis where its horizontal part vanishes, at y = 2
+  motion << 1, 0, 3, 0, 0, 1;  // about the vertical axis at y = 2, where its horizontal part vanishes
   EXPECT_EQ(modes.describe(motion), "screw motion about the axis through (0, 2, 0) along (0, 0, 1)");
 }
 

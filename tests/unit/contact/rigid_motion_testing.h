@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file rigid_motion_testing.h
-/// What the tests of check_rigid_motions share.
+/// Shared by the tests of check_rigid_motions.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -14,7 +14,7 @@
 namespace tribound::test
 {
 
-/// What check_rigid_motions says about the problem with this load, or "held".
+/// The message of check_rigid_motions for the problem with this load, or "held".
 template <int dim>
 std::string verdict(const DiscreteProblem<dim>& c, std::span<const double> load)
 {

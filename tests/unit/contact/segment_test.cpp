@@ -1,6 +1,6 @@
 /// @file segment_test.cpp
-/// Contact on segments: two elastic blocks on meshes that match or not, parts of facets, and normals that are
-/// not those of the facets.
+/// Contact on segments: two elastic blocks on matching or non-matching meshes, parts of facets, and normals
+/// that are not those of the facets.
 
 #include "tribound/contact/nitsche/segment.h"
 
@@ -69,8 +69,8 @@ struct Setting
   double pressed = 0.05;             ///< displacement of the top, downwards
 };
 
-/// The upper block pressed on the lower one and moved aside by `shift`; no displacement normal to the sides
-/// of both if `confined`.
+/// The upper block pressed on the lower one and moved sideways by `shift`. If `confined`, both blocks have no
+/// displacement normal to their sides.
 template <int dim>
 problem::Problem<dim> pressed_blocks(const mesh::Mesh<dim>& mesh, const Setting& setting)
 {
@@ -132,7 +132,7 @@ std::vector<problem::ContactLaw> laws_between_bodies()
   return all;
 }
 
-/// In uniaxial strain the stress is constant, through facets that do not match, too.
+/// In uniaxial strain the stress is constant, also across non-matching facets.
 template <int dim>
 void expect_constant_pressure(Setting setting)
 {
@@ -207,7 +207,7 @@ TEST(ContactSegments, WhatIsTiedMayBePulled)
   }
 }
 
-/// The derivative of T(u) in a direction against differences, and the tangent against the derivative.
+/// The directional derivative of T(u) against differences, and the tangent against the derivative.
 template <int dim>
 void expect_tangent(const contact::NitscheForm<dim>& form)
 {
@@ -221,7 +221,7 @@ void expect_tangent(const contact::NitscheForm<dim>& form)
   expect_contact_tangent(form, sum(pushed, 1, random_free_vector(form.constraints(), 0.003, 1)), 1e-6);
 }
 
-/// Tractions are evaluated through the nodes of the segments, states at the points themselves.
+/// Tractions are evaluated through the nodes of the segments, states directly at the points.
 template <int dim>
 void expect_tractions_of_states(int p)
 {
@@ -252,7 +252,7 @@ TEST(ContactSegments, TangentIsTheDerivative)
   }
 }
 
-/// Every body is in equilibrium: identities on both sides, and no force is lost between them.
+/// Every body is in equilibrium: the identities hold on both sides, and no force is lost between them.
 template <int dim>
 void expect_equilibrium(const Setting& setting)
 {
@@ -306,7 +306,7 @@ TEST(ContactSegments, AStiffMasterIsAnObstacle)
   EXPECT_LE((force(c.form) - expected).norm(), 1e-6 * expected.norm());
 }
 
-/// Normal and tangential parts may be taken by any unit vector.
+/// Any unit vector may define normal and tangential parts.
 TEST(ContactSegments, NormalsNeedNotBeThoseOfTheFacets)
 {
   const Blocks<2> c({.law = Coulomb(0.3), .p = 2, .n_upper = 4, .n_lower = 3, .shift = 0.02});
@@ -319,7 +319,7 @@ TEST(ContactSegments, NormalsNeedNotBeThoseOfTheFacets)
   EXPECT_LE(certify::check_identities<2>(form, newton.traction, stress).largest(2), 1e-10);
 }
 
-/// A boundary in a pair has nothing else to do.
+/// A boundary in a pair may not be used otherwise.
 TEST(ContactSegments, BoundariesOfPairsAreInNothingElse)
 {
   const mesh::Mesh<2> mesh(blocks<2>(1, 1));

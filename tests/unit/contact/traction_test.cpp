@@ -16,9 +16,9 @@ namespace tribound::test
 namespace
 {
 
-/// A block with flat bottom of the friction law, moved by (0.02, -0.1) and stretched upwards by 1 %: with
-/// E = 1, nu = 0.25 in plane strain, lambda = mu = 0.4 and sigma_yy = 1.2 * 0.01, sigma_xy = 0; facets of
-/// length 0.5, gamma = gamma_0 1.2 / 0.5.
+/// A block whose flat bottom has the friction law, moved by (0.02, -0.1) and stretched upwards by 1 %. With
+/// E = 1, nu = 0.25 in plane strain, lambda = mu = 0.4, sigma_yy = 1.2 * 0.01 and sigma_xy = 0. Facets have
+/// length 0.5, so gamma = gamma_0 1.2 / 0.5.
 struct FlatBlock
 {
   explicit FlatBlock(const problem::ContactLaw& law)
@@ -71,7 +71,7 @@ TEST(Traction, ClosedAndStickingInTheFirstStep)
   const Coulomb slippery(0.001);
   expect_constant(traction(Frictionless(), 1), {0, -F::normal});
   expect_constant(traction(slippery, 1), {F::tangential, -F::normal});
-  // also where contact would open
+  // even where contact would open
   expect_constant(traction(slippery, 0), {0, -F::gamma * 0.04});
 }
 

@@ -1,5 +1,5 @@
 /// @file twin_facets_test.cpp
-/// Facets of two bodies that match, and do so after bisection of some cells here and there.
+/// Matching facets of two bodies, which still match after bisection of some cells on either side.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace tribound::test
 namespace
 {
 
-/// With a gap between them, numbered at random, and facets of different sizes.
+/// Two blocks with a gap between them, numbered at random, and facets of different sizes.
 template <int dim>
 mesh::Mesh<dim> blocks_with_a_gap(unsigned seed)
 {
@@ -42,7 +42,7 @@ std::vector<contact::ContactSegment<dim>> segments(const problem::Problem<dim>& 
   return contact::contact_segments<dim>(problem, mesh, 10);
 }
 
-/// Whether corners lie opposite one another.
+/// Checks that corners lie opposite each other.
 template <int dim>
 void expect_opposite(const mesh::Mesh<dim>& mesh, const mesh::TwinFacets<dim>& twins)
 {
@@ -96,7 +96,7 @@ TYPED_TEST(TwinFacets, StaySuch)
   }
 }
 
-/// Cells far from what is halved on the other side stay as they are.
+/// Cells far from those halved on the other side stay unchanged.
 TYPED_TEST(TwinFacets, AreHalvedNoFurtherThanTheyMust)
 {
   constexpr int dim = TypeParam::value;

@@ -36,14 +36,14 @@ TEST(ContactFacts, FlatBoundaryWithAGap)
   EXPECT_THAT(facts[0].normal, ElementsAre(0, -1));
   EXPECT_NEAR(facts[0].spread, 0, 1e-12);
   EXPECT_NEAR(facts[0].kink, 0, 1e-12);
-  // The extreme points of the rule lie a little inside the facets, which end at 0 and at 2.
+  // The outermost points of the rule lie a little inside the facets, which end at 0 and at 2.
   EXPECT_LT(facts[0].smallest_gap, 0.1 * 0.05 * 0.05);
   EXPECT_NEAR(facts[0].smallest_gap_at[0], 0, 0.05);
   EXPECT_NEAR(facts[0].largest_gap, 0.1 * std::pow(facts[0].largest_gap_at[0], 2), 1e-15);
   EXPECT_NEAR(facts[0].largest_gap_at[0], 2, 0.05);
 }
 
-/// The bottom of a strip bent to a circle of radius 10, in six facets of one degree each.
+/// The bottom of a strip bent to a circle of radius 10, with six facets of one degree each.
 TEST(ContactFacts, PolygonHasEqualKinks)
 {
   const auto bend = [](const Point<2>& x) -> Point<2> {
@@ -73,7 +73,7 @@ TEST(ContactFacts, CornersOfTheBodyAreNoKinks)
   EXPECT_NEAR(facts[0].spread, 45, 1e-10);
 }
 
-/// The direction turns from the facets' normal at the left to 90 degrees off it at the right.
+/// The direction turns from the facets' normal at the left to 90 degrees away from it at the right.
 TEST(ContactFacts, DirectionsOffTheNormal)
 {
   ProblemData<2> data{.boundaries = {clamped<2>("top"), obstacle<2>("bottom")}};

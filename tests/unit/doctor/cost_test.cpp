@@ -1,5 +1,5 @@
 /// @file cost_test.cpp
-/// Costs: the number of unknowns is exact, the rest grows with it.
+/// Costs: the number of unknowns is exact; the other costs grow with it.
 
 #include "tribound/doctor/cost.h"
 
@@ -46,7 +46,7 @@ TEST(Cost, MultigridNeedsLessMemoryWhereFactorsAreLarge)
   for (int i = 0; i < 4; ++i) EXPECT_LT(iterative[i].bytes, direct[i].bytes);
 }
 
-/// Runs of the examples to which the model was not fitted (docs/doctor.md), in MB: within a quarter.
+/// Examples that the model was not fitted to (docs/doctor.md), in MB: predicted to within a quarter.
 TEST(Cost, MemoryAsMeasured)
 {
   struct Run

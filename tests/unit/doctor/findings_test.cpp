@@ -1,5 +1,5 @@
 /// @file findings_test.cpp
-/// Which facts are worth a note or a warning, and the words for them.
+/// Which facts deserve a note or a warning, and its words.
 
 #include "tribound/doctor/findings.h"
 
@@ -204,11 +204,11 @@ TEST(Findings, MeshAndUnits)
   EXPECT_THAT(finding(diagnosis, "cell_shapes").where, ElementsAre(0.25, 0.5));
   EXPECT_EQ(finding(diagnosis, "cell_sizes").severity, doctor::Severity::warning);
   EXPECT_EQ(finding(diagnosis, "units").severity, doctor::Severity::note);
-  diagnosis.loads.extent = {2, 1, 1};  // what is poor for triangles is usual for tetrahedra
+  diagnosis.loads.extent = {2, 1, 1};  // poor shapes of triangles are usual for tetrahedra
   EXPECT_EQ(finding(diagnosis, "cell_shapes").severity, doctor::Severity::ok);
 }
 
-/// With E of the first region, in these units.
+/// A case with this E in the first region, in these units.
 doctor::Diagnosis named(const problem::Units& units, double E)
 {
   doctor::Diagnosis diagnosis = healthy();

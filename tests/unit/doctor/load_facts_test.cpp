@@ -1,5 +1,5 @@
 /// @file load_facts_test.cpp
-/// Stresses, strains and units guessed from the data of a case.
+/// Guesses of stresses, strains and units from the data of a case.
 
 #include "tribound/doctor/load_facts.h"
 
@@ -73,7 +73,7 @@ TEST(LoadFacts, PrescribedDisplacements)
   const auto pushed = facts({fixed<2>("top", 0, -0.3), obstacle<2>("bottom")});
   EXPECT_NEAR(pushed.displacement_strain, 0.15, 1e-14);  // the obstacle stays
   const auto moved = facts({fixed<2>("top", 5, -3)});
-  EXPECT_NEAR(moved.displacement_strain, 0, 1e-14);  // as a whole
+  EXPECT_NEAR(moved.displacement_strain, 0, 1e-14);  // a rigid motion
 }
 
 TEST(LoadFacts, MaterialsAsGiven)

@@ -1,5 +1,5 @@
 /// @file mesh_quality_test.cpp
-/// Angles and aspect ratios of cells whose shape is known.
+/// Angles and aspect ratios of cells of known shape.
 
 #include "tribound/doctor/mesh_quality.h"
 

@@ -1,5 +1,5 @@
 /// @file pair_facts_test.cpp
-/// What lies opposite what, and how far, for pairs of known shape; what is worth a warning.
+/// Opposite sides and their distances for pairs of known shape; what deserves a warning.
 
 #include "tribound/doctor/pair_facts.h"
 

@@ -93,7 +93,7 @@ TEST(RunWarnings, ContactThatIsNotResolved)
   EXPECT_THAT(codes(sound, outcome), ElementsAre("no_contact"));
 }
 
-/// What is compared with a limit, from either side of it, and where it is.
+/// Values on either side of the limit, and the location in the warning.
 TEST(RunWarnings, Zigzag)
 {
   doctor::ContactOutcome outcome = closed_contact();
@@ -149,7 +149,7 @@ TEST(RunWarnings, Friction)
   outcome = closed_contact();
   outcome.slipping = outcome.closed;
   EXPECT_THAT(codes(sound, outcome), ElementsAre("sliding"));
-  outcome.has_friction = false;  // without friction all slides always
+  outcome.has_friction = false;  // without friction everything slides
   EXPECT_THAT(codes(sound, outcome), IsEmpty());
 }
 

@@ -1,6 +1,6 @@
 /// @file solution_facts_test.cpp
-/// Penetration, sliding and zigzags of given displacements. With E = 1, nu = 0 a displacement (0, w(x)) that
-/// is constant in y has sigma^n = 0 at the bottom, where the pressure is then gamma (-w - g)_+.
+/// Penetration, sliding and zigzags of given displacements. With E = 1 and nu = 0, a displacement (0, w(x))
+/// that is constant in y has sigma^n = 0 at the bottom, so the pressure there is gamma (-w - g)_+.
 
 #include "tribound/doctor/solution_facts.h"
 
@@ -70,7 +70,7 @@ TEST(SolutionFacts, OpenContact)
   EXPECT_TRUE(found.penetration_at.empty());
 }
 
-/// Softens from an opening of 0 on, is broken from 1 on, and does not slip.
+/// Softens from an opening of 0, is broken from an opening of 1, and does not slip.
 const problem::Contact bond(problem::JointLaw({.tension = {.strength = 1, .fracture_energy = 0.5},
                                                .stick = true}));
 
@@ -89,7 +89,7 @@ TEST(SolutionFacts, ProcessZone)
   EXPECT_FALSE(damage_of_opening(0.4).process_zone);  // nothing is broken
   const std::optional<double> wide = damage_of_opening(0.75).process_zone;
   ASSERT_TRUE(wide);
-  EXPECT_NEAR(*wide, 4, 0.5);  // from x = 1/3 to 4/3: four facets of 1/4, as the points tell
+  EXPECT_NEAR(*wide, 4, 0.5);  // from x = 1/3 to 4/3: four facets of 1/4, judging by the points
   const std::optional<double> narrow = damage_of_opening(3).process_zone;
   ASSERT_TRUE(narrow);
   EXPECT_NEAR(*narrow, 1, 0.3);
@@ -166,7 +166,7 @@ TEST(SolutionFacts, ForceAndMeanPressure)
   EXPECT_NEAR(found.mean_pressure(), 0.5, 1e-12);
 }
 
-/// Steep, bent, or with a kink: none goes up and down.
+/// Steep, curved or kinked, but none oscillates.
 TEST(SolutionFacts, PressuresWithoutZigzag)
 {
   const std::vector<std::function<double(double)>> pressures = {
@@ -182,7 +182,7 @@ TEST(SolutionFacts, PressuresWithoutZigzag)
                 0, 1e-13);
 }
 
-/// A gap that jumps by 2 a from facet to facet: mean pressures gamma (1 - a +- a), which zigzag by gamma a on
+/// A gap that jumps by 2 a from facet to facet: mean pressures gamma (1 - a +- a). They zigzag by gamma a on
 /// the four facets whose neighbours have two neighbours.
 TEST(SolutionFacts, ZigzagOfTheGap)
 {

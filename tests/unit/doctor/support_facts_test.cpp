@@ -1,5 +1,5 @@
 /// @file support_facts_test.cpp
-/// Motions that contact alone stops, what to fix against a motion, and corners with too many conditions.
+/// Motions that only contact stops, what to fix against a motion, and corners with too many conditions.
 
 #include "tribound/doctor/support_facts.h"
 
@@ -38,7 +38,7 @@ TEST(SupportFacts, RollerLeavesTheVerticalMotionToContact)
   EXPECT_EQ(motions[0].body, "the body (region \"box\")");
   EXPECT_EQ(motions[0].motion, "translation along y");
   EXPECT_FALSE(motions[0].by_friction);
-  // The top would be the better side, but it is loaded: of the others none faces y.
+  // The top would be the better side, but it is loaded; none of the others faces y.
   ASSERT_TRUE(motions[0].remedy);
   EXPECT_NE(motions[0].remedy->boundary, "top");
   EXPECT_EQ(motions[0].remedy->component, 1);
@@ -62,7 +62,7 @@ TEST(SupportFacts, SlidingIsJudgedWhereFrictionAloneHoldsTheBody)
   EXPECT_THAT(sliding_boundaries(block_with({rough_floor})), ElementsAre("bottom"));
   EXPECT_THAT(sliding_boundaries(block_with({rough_floor, fixed<2>("left", free, 0)})),
               ElementsAre("bottom"));
-  // A plane of symmetry, or a frictionless wall, takes the force that would make it slide.
+  // A plane of symmetry or a frictionless wall takes the force that would make the body slide.
   EXPECT_THAT(sliding_boundaries(block_with({rough_floor, fixed<2>("left", 0, free)})), IsEmpty());
   EXPECT_THAT(sliding_boundaries(block_with({rough_floor, obstacle<2>("left")})), IsEmpty());
 }
