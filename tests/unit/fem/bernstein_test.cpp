@@ -1,5 +1,5 @@
 /// @file bernstein_test.cpp
-/// Coefficients in Bernstein's basis: they make the polynomial, and they enclose it.
+/// Coefficients in the Bernstein basis: they determine the polynomial and enclose it.
 
 #include "tribound/fem/bernstein.h"
 
@@ -37,7 +37,7 @@ TEST(Bernstein, AQuadraticHasItsKnownCoefficients)
   EXPECT_NEAR(b[2], 0.25, 1e-14);
 }
 
-/// A random polynomial of the degree: a sum of powers of affine functions.
+/// A random polynomial of the given degree: a sum of powers of affine functions.
 template <int k>
 void expect_enclosure(int degree, std::mt19937& dice)
 {
@@ -81,7 +81,7 @@ TEST(Bernstein, CoefficientsEnclosePolynomials)
     }
 }
 
-/// From values at nodes, against the definition |a|!/a! lambda^a, and back.
+/// From nodal values to coefficients, against the definition |a|!/a! lambda^a, and back.
 template <int k>
 void expect_transformed(int degree, std::mt19937& dice)
 {

@@ -116,7 +116,7 @@ void expect_facet_tables_agree()
       for (int q = 0; q < expected.n_points; ++q)
         for (int i = 0; i < basis.n_nodes(); ++i)
         {
-          // The trace of a function is the function of the facet with the node's remaining weights.
+          // The trace of a basis function is the facet's basis function with the remaining weights.
           double value = 0;
           for (int j = 0; j < trace.n_nodes(); ++j)
             if (basis.node(i)[facet] == 0 && mesh::facet_vertices(basis.node(i), facet) == trace.node(j))

@@ -1,4 +1,4 @@
-/// Functions carried to a bisected mesh are the same functions.
+/// Functions carried to a bisected mesh do not change.
 
 #include "tribound/fem/nested.h"
 
@@ -29,7 +29,7 @@ Point<dim> value_in_cell(const fem::LagrangeSpace<dim>& space, std::span<const d
   return value;
 }
 
-/// u at a point of the domain, in whatever cell contains it.
+/// u at a point of the domain, in any cell that contains it.
 template <int dim>
 Point<dim> value_at(const fem::LagrangeSpace<dim>& space, std::span<const double> u, const Point<dim>& x)
 {
@@ -83,7 +83,7 @@ TYPED_TEST(Nested, CarriedToABisectedMeshValuesStay)
   }
 }
 
-/// Over several bisections the same as at once: nothing is lost on the way.
+/// Carried over several bisections, step by step or at once, values stay the same.
 TYPED_TEST(Nested, CarriedOverManyLevelsValuesStay)
 {
   constexpr int dim = TypeParam::value;

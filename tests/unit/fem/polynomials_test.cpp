@@ -1,5 +1,5 @@
 /// @file polynomials_test.cpp
-/// The orthonormal basis by its defining properties, with quadrature and differences.
+/// The orthonormal basis, checked by its defining properties with quadrature and differences.
 
 #include "tribound/fem/polynomials.h"
 
@@ -28,7 +28,7 @@ std::vector<double> values(int degree, const Point<k>& x)
   return result;
 }
 
-/// Corners, where collapsed coordinates are singular, points on edges, and inside.
+/// Corners, where collapsed coordinates are singular, points on edges, and interior points.
 template <int k>
 std::vector<Point<k>> sample_points()
 {

@@ -1,5 +1,5 @@
 /// @file quadrature_test.cpp
-/// Rules against the closed formula for monomials; where their points are, and how many.
+/// Rules against the closed formula for monomials; position and number of their points.
 
 #include "tribound/fem/quadrature.h"
 
@@ -94,8 +94,8 @@ std::array<double, k + 1> lambda_of(const Point<k>& x)
   return lambda;
 }
 
-/// Points that differ by rounding only count as one, since 1 - x - y rounds; 1 - x does not from 1/2 on. The
-/// weights of an orbit are one number.
+/// Points that differ only by rounding count as one, since 1 - x - y rounds (1 - x does not, for x >= 1/2).
+/// Weights in an orbit are exactly equal.
 template <int k>
 bool is_point_of(const fem::Quadrature<k>& rule, const Point<k>& x, double weight)
 {
@@ -122,7 +122,7 @@ void expect_symmetric(int degree)
   while (std::ranges::next_permutation(order).found);
 }
 
-/// The highest degrees that the tables reach.
+/// The highest degrees in the tables.
 constexpr int triangle_reach = 20;
 constexpr int tetrahedron_reach = 17;
 
@@ -153,7 +153,7 @@ TEST(Quadrature, NoPermutationOfTheVerticesChangesARule)
   for (int degree = 0; degree <= tetrahedron_reach; ++degree) expect_symmetric<3>(degree);
 }
 
-/// Not closer to the boundary than a thousandth of the height, so that rounding can put none on it.
+/// No point is closer to the boundary than a thousandth of the height, so rounding cannot put one on it.
 template <int k>
 void expect_well_inside(int degree)
 {

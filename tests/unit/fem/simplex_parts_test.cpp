@@ -24,7 +24,7 @@ class SimplexParts : public ::testing::Test
 
 TYPED_TEST_SUITE(SimplexParts, AllDimensions, );
 
-/// Cut along three random planes the parts fill the simplex, and none crosses a plane.
+/// The parts from cuts along three random planes fill the simplex, and none crosses a plane.
 TYPED_TEST(SimplexParts, CutAlongPlanesFillTheSimplexAndLieOnOneSide)
 {
   constexpr int k = TypeParam::value;

@@ -134,7 +134,7 @@ TYPED_TEST(Space, NodesOfABoxAreAGrid)
               dim == 2 ? (4 * p + 1) * (3 * p + 1) : (3 * p + 1) * (2 * p + 1) * (2 * p + 1));
 }
 
-/// The constraints of these conditions on the box of grid().
+/// The constraints that these conditions give on the box of grid().
 template <int dim>
 fem::Constraints constraints_of(const std::vector<problem::BoundaryCondition<dim>>& boundaries, int p)
 {

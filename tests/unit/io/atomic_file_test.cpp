@@ -94,7 +94,7 @@ TEST_F(AtomicFileTest, NamesTheFileAndTheReasonOfAFailure)
   }
 }
 
-/// Lets no file grow beyond a limit, which fails a write as a full disk does.
+/// Lets no file grow beyond a limit; a write then fails as on a full disk.
 class FileSizeLimit
 {
  public:

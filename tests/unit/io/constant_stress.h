@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file constant_stress.h
-/// Boxes pressed on a floor without friction, in constant stress: every degree has the solution exactly.
+/// Boxes pressed on a frictionless floor, in constant stress: every degree reproduces the solution.
 
 #include <array>
 #include <string>
@@ -37,7 +37,7 @@ Point<dim> constant_stress_displacement(const Point<dim>& x)
   return u;
 }
 
-/// Its stress; zz in 2D is that of plane strain.
+/// The stress; zz in 2D is that of plane strain.
 template <int dim>
 std::array<double, 3> constant_stress()
 {
@@ -49,7 +49,7 @@ std::array<double, 3> constant_stress()
   return {xx, xx, last};
 }
 
-/// What the adaptive loop would hand over.
+/// The level as the adaptive loop would hand it over.
 template <int dim>
 adapt::CertifiedLevel<dim> constant_stress_level(const DiscreteProblem<dim>& box)
 {

@@ -46,7 +46,7 @@ int tag_of(const DiscreteProblem<dim>& c, const std::string& boundary)
   return tag;
 }
 
-/// Columns by name, numbers only.
+/// A table of numbers, with columns by name.
 class Table
 {
  public:
@@ -198,7 +198,7 @@ TEST(ContactCsv, RoundingOfCoordinatesIsZero)
 
 TEST(ContactChains, OnePieceAroundACorner)
 {
-  // The top is joined to the right side: the chain starts at the upper left corner and ends below.
+  // Top and right side are one group: the chain starts at the upper left corner and ends at the bottom.
   mesh::MeshData<2> data = block<2>({4, 2});
   for (auto& facet : data.facets)
     if (facet.tag == number_of(data, "right")) facet.tag = number_of(data, "top");
@@ -218,8 +218,8 @@ TEST(ContactChains, OnePieceAroundACorner)
 
 TEST(ContactChains, ClosedAndInTwoPieces)
 {
-  // A square hole is cut out of a square; its four sides are given to the bottom group, which is a closed
-  // chain then, beside the open one of the bottom itself.
+  // A square hole is cut out of a square, and its four sides join the bottom group. They form a closed chain
+  // beside the open chain of the bottom itself.
   mesh::MeshData<2> data = test::box<2>({0, 0}, {3, 3}, {3, 3});
   data.cells.erase(data.cells.begin() + 8, data.cells.begin() + 10);
   data.regions.resize(data.cells.size());

@@ -1,4 +1,4 @@
-// A mesh written for Gmsh is read again as it was.
+// A mesh written for Gmsh is read back unchanged.
 
 #include "tribound/io/fields/gmsh_file.h"
 
@@ -21,7 +21,7 @@ namespace tribound::test
 namespace
 {
 
-/// A distorted box in which some cells are bisected, in two regions.
+/// A distorted box with two regions and some bisected cells.
 template <int dim>
 mesh::Mesh<dim> bisected_box()
 {

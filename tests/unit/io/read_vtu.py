@@ -1,4 +1,4 @@
-"""Reads the files of io_write_vtu with VTK's own reader and compares with the polynomials written."""
+"""Reads the files of io_write_vtu with VTK's own reader and compares them with the polynomials."""
 
 import json
 import math
@@ -18,7 +18,7 @@ GAP, THRESHOLD = 0.25, 0.03
 
 
 def displacement(dimension, degree, x):
-    """Value and gradient of the displacement of write_vtu.cpp, always with 3 components."""
+    """Value and gradient of the displacement in write_vtu.cpp, always with 3 components."""
     u, gradient = [0.0] * 3, [[0.0] * 3 for _ in range(3)]
     for a in range(dimension):
         c = [1.0 + a, 0.5 * a - 2.0, 0.5 + a if dimension == 3 else 0.0]
@@ -69,7 +69,7 @@ def read(path):
 
 
 def check_cells(grid, k, degree, n_cells, name):
-    """Cell types, points of their own, and points where VTK's parametric coordinates put them."""
+    """Cell types; every cell has its own points, at VTK's parametric coordinates."""
     n_nodes = math.comb(degree + k, k)
     check(grid.GetNumberOfCells() == n_cells, f"{name}: {grid.GetNumberOfCells()} cells, not {n_cells}")
     check(grid.GetNumberOfPoints() == n_cells * n_nodes, f"{name}: {grid.GetNumberOfPoints()} points")
@@ -87,7 +87,7 @@ def check_cells(grid, k, degree, n_cells, name):
 
 
 def random_points(grid, k, rng):
-    """For each cell a few points: x and the weights of the nodes there, as VTK interpolates."""
+    """A few points per cell: x and VTK's interpolation weights of the nodes there."""
     for c in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(c)
         nodes = [cell.GetPointId(i) for i in range(cell.GetNumberOfPoints())]
@@ -105,7 +105,7 @@ def interpolate(array, nodes, weights):
 
 
 def check_principal(values, s, name):
-    """They fall, and have the invariants of the stress."""
+    """They are in descending order and have the invariants of the stress."""
     xx, yy, zz, xy, yz, xz = s
     a, b, c = values
     size = max(abs(x) for x in s)

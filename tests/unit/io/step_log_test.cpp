@@ -88,7 +88,7 @@ TEST_F(StepLog, AddsUpToTheEarlierSteps)
   EXPECT_EQ(earlier.steps, "[{},[]]");
 }
 
-/// The array is announced, and nothing of it is there.
+/// The array is announced, but its data are missing.
 TEST_F(StepLog, AnAbsurdNumberOfRowsInACheckpointCostsNoMemory)
 {
   const hid_t file = H5Fcreate(checkpoint.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);

@@ -28,8 +28,8 @@ TEST(VtkNodes, CubicTriangle)
                           Node{0, 2, 1}, Node{0, 1, 2}, Node{1, 0, 2}, Node{2, 0, 1}, Node{1, 1, 1}));
 }
 
-// The inner nodes of the faces, in the order that vtkLagrangeTetra::ToBarycentricIndex() gives; its last
-// coordinate belongs to vertex 0.
+// The inner nodes of the faces, in the order of vtkLagrangeTetra::ToBarycentricIndex(), whose last coordinate
+// belongs to vertex 0.
 TEST(VtkNodes, InnerNodesOfTheQuarticTetrahedron)
 {
   using Node = std::array<int, 4>;

@@ -43,7 +43,7 @@ TEST(Vtu, PrincipalStresses)
               ElementsAre(DoubleNear(2, 1e-14), DoubleNear(0, 1e-14), DoubleNear(-2, 1e-14)));
   EXPECT_THAT(io::principal_stresses({1.0, 1.0, 2.5, -2.0, 0.0, 0.0}),
               ElementsAre(DoubleNear(3, 1e-14), DoubleNear(2.5, 1e-14), DoubleNear(-1, 1e-14)));
-  // 4, 1, 1 in a basis that is turned about (1, 1, 1).
+  // 4, 1, 1 in a basis rotated about (1, 1, 1).
   EXPECT_THAT(io::principal_stresses({2.0, 2.0, 2.0, 1.0, 1.0, 1.0}),
               ElementsAre(DoubleNear(4, 1e-7), DoubleNear(1, 1e-7), DoubleNear(1, 1e-7)));
 }

@@ -1,5 +1,5 @@
 /// @file write_vtu.cpp
-/// Writes VTU files of polynomial displacements for read_vtu.py, which knows the polynomials too.
+/// Writes VTU files of polynomial displacements for read_vtu.py, which also knows the polynomials.
 
 #include <cmath>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace tribound::test
 namespace
 {
 
-/// A vertex inside, moved such that no two cells are alike.
+/// An interior vertex, moved so that no two cells are alike.
 template <int dim>
 Point<dim> moved(Point<dim> x)
 {
@@ -76,7 +76,7 @@ void write(const std::filesystem::path& directory, int degree, nlohmann::json& m
                                {"contact_facets", box.form.segments().size()}});
 }
 
-/// An empty contact file is a file all the same.
+/// An empty contact file is still a valid file.
 void write_without_contact(const std::filesystem::path& directory)
 {
   const DiscreteProblem<2> box(test::box<2>({0, 0}, {1, 1}, {1, 1}), {.boundaries = {clamped<2>("left")}},

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file bisect_checks.h
-/// What must hold of every bisected mesh, checked by coordinates and not by its own topology.
+/// Properties of every bisected mesh, checked by coordinates rather than its own topology.
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 namespace tribound::testing_mesh
 {
 
-/// The coordinates of a simplex's vertices, in lexicographic order: what it is whatever its numbers are.
+/// The coordinates of a simplex's vertices in lexicographic order: its identity, independent of numbering.
 template <int dim, std::size_t n>
 std::array<std::array<double, dim>, n> coordinates(const mesh::Mesh<dim>& mesh,
                                                    const std::array<Index, n>& vertices)
@@ -25,7 +25,7 @@ std::array<std::array<double, dim>, n> coordinates(const mesh::Mesh<dim>& mesh,
   return points;
 }
 
-/// All cells by their coordinates, in order.
+/// All cells by their coordinates, sorted.
 template <int dim>
 std::vector<std::array<std::array<double, dim>, dim + 1>> cells_by_coordinates(const mesh::Mesh<dim>& mesh)
 {
@@ -35,8 +35,8 @@ std::vector<std::array<std::array<double, dim>, dim + 1>> cells_by_coordinates(c
   return cells;
 }
 
-/// Facets with one cell cover the boundary and nothing else, facets with two cells have them on both sides.
-/// Facets and vertices are told apart by coordinates.
+/// Facets with one cell cover exactly the boundary; facets with two cells have one on each side. Facets and
+/// vertices are identified by coordinates.
 template <int dim>
 void expect_conforming(const mesh::Mesh<dim>& mesh, double boundary)
 {
@@ -113,7 +113,7 @@ void expect_same_parts(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& origi
     EXPECT_NEAR(boundary_measure(mesh, tag), boundary_measure(original, tag), 1e-12) << tag;
 }
 
-/// Every cell lies in its parent and has its region, and the children fill it.
+/// Every cell lies in its parent and has the parent's region; the children fill the parent.
 template <int dim>
 void expect_right_parents(const mesh::Bisected<dim>& bisected, const mesh::Mesh<dim>& original)
 {
@@ -136,8 +136,8 @@ void expect_right_parents(const mesh::Bisected<dim>& bisected, const mesh::Mesh<
   for (const double share : filled) ASSERT_NEAR(share, 1.0, 1e-11);
 }
 
-/// The vertices are those of the original mesh and the middles of older ones; the ancestors of the original
-/// mesh stay, and it joins them.
+/// The vertices are those of the original mesh and midpoints of older ones. The original mesh is added to its
+/// own ancestors.
 template <int dim>
 void expect_right_ancestry(const mesh::Mesh<dim>& bisected, const mesh::Mesh<dim>& original)
 {
@@ -156,8 +156,8 @@ void expect_right_ancestry(const mesh::Mesh<dim>& bisected, const mesh::Mesh<dim
   }
 }
 
-/// Every boundary group is where it was: the facets of the bisected mesh lie in facets of the original one
-/// with their tag. Facets on the boundary have one parent cell; its facet is the one that contains them.
+/// Boundary groups stay in place: facets of the bisected mesh lie in facets of the original one with the same
+/// tag. A facet on the boundary has one parent cell, one facet of which contains it.
 template <int dim>
 void expect_tags_in_place(const mesh::Bisected<dim>& bisected, const mesh::Mesh<dim>& original)
 {

@@ -1,5 +1,5 @@
 /// Bisection: conforming, tags and measures inherited, children inside their parents, shapes bounded,
-/// independent of the numbering.
+/// independent of numbering.
 
 #include "tribound/mesh/bisect.h"
 
@@ -57,7 +57,7 @@ std::vector<Index> cells_around(const mesh::Mesh<dim>& mesh, Index vertex)
   return {begin + topology.vertex_cells_begin[vertex], begin + topology.vertex_cells_begin[vertex + 1]};
 }
 
-/// The vertex furthest to the lower left.
+/// The vertex farthest to the lower left.
 template <int dim>
 Index corner(const mesh::Mesh<dim>& mesh)
 {
@@ -102,8 +102,8 @@ mesh::Mesh<dim> bisect_and_check(mesh::Mesh<dim> mesh, int levels, const Choose&
   return mesh;
 }
 
-/// The smallest angle of the shapes that bisection of the cells leads to: after 9 bisections of every cell
-/// there are no new ones, see marked_cell_test.cpp.
+/// The smallest angle among the descendants of the cells. After 9 bisections of every cell there are no new
+/// shapes, see marked_cell_test.cpp.
 template <int dim>
 double smallest_angle_of_descendants(const mesh::Mesh<dim>& mesh)
 {
@@ -117,7 +117,7 @@ double smallest_angle_of_descendants(const mesh::Mesh<dim>& mesh)
   return smallest;
 }
 
-/// Angles of `mesh`, which comes from `original`, are bounded; the test's XML has the figures.
+/// The angles of `mesh`, refined from `original`, are bounded; the test's XML output contains the figures.
 template <int dim>
 void expect_bounded_angles(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& original)
 {
@@ -146,7 +146,7 @@ TYPED_TEST(Bisect, RandomLevels)
   expect_bounded_angles(mesh, irregular_mesh<dim>());
 }
 
-/// Far from the corner nothing happens, so that from some level on the same number of cells is added.
+/// Far from the corner nothing changes, so from some level on each level adds the same number of cells.
 TYPED_TEST(Bisect, GradedTowardsACorner)
 {
   constexpr int dim = TypeParam::value;
@@ -177,7 +177,7 @@ TYPED_TEST(Bisect, AllCellsDimTimesHalvesEveryEdge)
   }
 }
 
-/// Descendants of marked cells by their volume; the rest of the mesh is cut less.
+/// The volumes of the descendants of marked cells; the rest of the mesh is cut less.
 TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
 {
   constexpr int dim = TypeParam::value;
@@ -198,8 +198,8 @@ TYPED_TEST(Bisect, MarkedCellsAreCutAsOftenAsAskedFor)
   }
 }
 
-/// A mesh goes on where it stopped: what is done in one go and in two is the same. The cells are flat, so
-/// that the longest edges of the descendants are not the ones to be refined.
+/// A mesh continues where it stopped: bisecting in one go or in two gives the same. The cells are flat, so
+/// the longest edges of the descendants are not their refinement edges.
 TYPED_TEST(Bisect, BisectionTypesAreCarriedAlong)
 {
   constexpr int dim = TypeParam::value;
@@ -272,7 +272,7 @@ TYPED_TEST(Bisect, NumberingDoesNotMatter)
     }
 }
 
-/// Meshes that Gmsh makes: two regions around a hole; a solid whose cells shrink towards an edge.
+/// Gmsh meshes: two regions around a hole; a solid whose cells shrink towards an edge.
 const std::string plate_geo = R"(
 SetFactory("OpenCASCADE");
 Rectangle(1) = {0, 0, 0, 2, 1}; Disk(2) = {0.8, 0.5, 0, 0.3, 0.2}; Rectangle(3) = {1.5, 0, 0, 0.5, 1};

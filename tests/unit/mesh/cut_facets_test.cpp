@@ -1,5 +1,5 @@
 /// @file cut_facets_test.cpp
-/// Cells cut in fans: the same domain, boundaries and regions, with vertices where they are wanted.
+/// Cells cut into fans: the domain, boundaries and regions stay, with vertices where they are wanted.
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,7 @@ TEST(CutFacets, CutNothingElse)
     const std::map<int, double> after = lengths(cut.mesh);
     ASSERT_EQ(after.size(), before.size());
     for (const auto& [tag, length] : before) EXPECT_NEAR(after.at(tag), length, 1e-13);
-    // and can be bisected
+    // the mesh can be bisected
     const std::vector<Index> first = {0, cut.mesh.n_cells() - 1};
     EXPECT_GT(mesh::bisect<2>(cut.mesh, first).mesh.n_cells(), cut.mesh.n_cells());
   }

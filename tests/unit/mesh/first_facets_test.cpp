@@ -1,5 +1,5 @@
 /// @file first_facets_test.cpp
-/// The facets of the first mesh, and where those of later ones lie in them.
+/// The facets of the first mesh, and the position of later facets in them.
 
 #include "tribound/mesh/first_facets.h"
 
@@ -25,7 +25,7 @@ namespace tribound::test
 namespace
 {
 
-/// Every boundary facet lies in one of the first mesh, of the same group; those of the first mesh are
+/// Every boundary facet lies in a facet of the first mesh, of the same group. Facets of the first mesh lie in
 /// themselves.
 template <int dim>
 void expect_found(const mesh::Mesh<dim>& mesh, const mesh::FirstFacets& first)

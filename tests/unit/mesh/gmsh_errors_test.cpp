@@ -1,4 +1,4 @@
-/// Files that must be refused, each with what the message has to say.
+/// Files that must be refused, with required parts of the message.
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ using testing_mesh::Directory;
 using testing_mesh::expect_input_error;
 using testing_mesh::message_of;
 
-/// A file of MSH 2.2 from its nodes ("x y z") and its elements (what follows the number).
+/// An MSH 2.2 file from its nodes ("x y z") and its elements (without their numbers).
 std::string msh(const std::vector<std::string>& nodes, const std::vector<std::string>& elements,
                 const std::string& names = "")
 {
@@ -36,7 +36,7 @@ Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
 )";
 
-/// A binary file of MSH 4.1: a surface between so many curves, which are not there.
+/// A binary MSH 4.1 file: a surface bounded by this many curves, which do not exist.
 std::string binary_entities_with(std::uint64_t n_curves)
 {
   std::string text = "$MeshFormat\n4.1 1 8\n";
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
          "block.msh",
          msh(square, {"2 2 1 1 1 2 3", "2 2 1 1 1 3 4"}).replace(114, 1, "2147483648"),
          {"block.msh: Gmsh cannot read the file: it was ended by signal", "numbered", "Mesh.Renumber"}},
-        {"TooManyNodes",  // Gmsh makes room for them
+        {"TooManyNodes",  // Gmsh allocates space for them
          "block.msh",
          "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 0 0\n1 0 0 0 0\n$EndEntities\n"
          "$Nodes\n1 1000000000 1 1000000000\n0 1 0 1000000000\n1\n$EndNodes\n",
@@ -241,7 +241,7 @@ TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
       {"case.toml:3: mesh.file: mesh file \"nowhere/block.msh\" does not exist", "relative to"});
 }
 
-/// A loop of 10^9 turns, in which Gmsh says nothing.
+/// A loop of 10^9 iterations, during which Gmsh is silent.
 TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 {
   const Directory directory;

@@ -1,4 +1,4 @@
-/// Meshes from files that are in order: every version, regions and boundaries, orientation, left-over nodes.
+/// Meshes from valid files: every version, regions and boundaries, orientation, unused nodes.
 
 #include <gmsh.h>
 
@@ -15,7 +15,7 @@ using testing_mesh::boundary_measure;
 using testing_mesh::Directory;
 using testing_mesh::volume;
 
-/// Two regions side by side, four boundary groups, one of them of two curves; point 9 is a left-over.
+/// Two regions side by side and four boundary groups, one with two curves; point 9 is unused.
 const std::string plane_geo = R"(
 Point(1) = {0, 0, 0, 0.4}; Point(2) = {1, 0, 0, 0.4}; Point(3) = {3, 0, 0, 0.4};
 Point(4) = {3, 1, 0, 0.4}; Point(5) = {1, 1, 0, 0.4}; Point(6) = {0, 1, 0, 0.4}; Point(9) = {5, 5, 0, 0.4};
@@ -35,7 +35,7 @@ Physical Volume("long") = {1}; Physical Volume("short") = {2};
 Physical Surface("floor") = Surface In BoundingBox {-0.1, -0.1, -0.1, 3.1, 1.1, 0.1};
 )";
 
-/// Meshes a .geo by Gmsh itself and saves it.
+/// Meshes a .geo with Gmsh itself and saves the mesh.
 mesh::MeshFile saved(const Directory& directory, const std::string& geo, double version, bool binary,
                      bool all = false)
 {
@@ -90,7 +90,7 @@ void expect_solid(const mesh::AnyMesh& any)
   EXPECT_NEAR(boundary_measure(mesh, -1), 11, 1e-12);
 }
 
-/// A version of the format, binary or not.
+/// A version of the format, binary or ASCII.
 class GmshFormat : public testing::TestWithParam<std::pair<double, bool>>
 {
 };
@@ -135,7 +135,7 @@ TEST(Gmsh, GeometriesAreMeshed)
   expect_solid(mesh::read_gmsh(directory.write("solid.geo", solid_geo)));
 }
 
-/// How many second-order facets a group has; each of their nodes passes `check`.
+/// The number of second-order facets in a group; each of their nodes passes `check`.
 template <int dim, class Check>
 std::size_t check_nodes(const mesh::Mesh<dim>& mesh, int tag, const Check& check)
 {
@@ -153,7 +153,7 @@ std::size_t n_facets(const mesh::Mesh<dim>& mesh, int tag)
   return std::ranges::count(mesh.boundary(), tag, &mesh::BoundaryFacet::tag);
 }
 
-/// Cells get straight sides; the facets of the groups keep their nodes, on the circle and on the ball.
+/// Cells get straight sides; facets of groups keep their nodes, on the circle and on the ball.
 TEST(Gmsh, OfOrderTwoTheNodesOfBoundariesAreKept)
 {
   const Directory directory;
@@ -240,8 +240,8 @@ TEST(Gmsh, ReadingTwiceGivesTheSame)
   EXPECT_TRUE(std::ranges::equal(first.vertices(), second.vertices()));
 }
 
-/// The process that meshes is a copy without the threads of this one; and what the program has loaded into
-/// Gmsh itself stays.
+/// The meshing process is a copy without the threads of this process. A model that the program itself has
+/// loaded into Gmsh stays.
 TEST(Gmsh, ReadsBesideThreadsAndAnotherModel)
 {
   const Directory directory;

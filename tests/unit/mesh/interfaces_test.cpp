@@ -1,4 +1,4 @@
-/// Bodies whose boundaries touch where an interface says so, and meshes that are cut open along joints.
+/// Bodies whose boundaries touch at declared interfaces, and meshes cut open along joints.
 
 #include <map>
 #include <set>
@@ -29,7 +29,7 @@ MeshData<dim> cube(double y, int n, double x = 0, double height = 1)
     return box<3>({x, y, 0}, {x + 1, y + height, 1}, {n, 1, n});
 }
 
-/// A box of n facets in each direction on one of m, where vertices are doubled.
+/// A box of n facets in each direction on a box of m; vertices between them are doubled.
 template <int dim>
 MeshData<dim> stack(int n, int m, double x = 0, double overlap = 0)
 {
@@ -95,12 +95,12 @@ TEST(Interfaces, EveryOverlapNeedsAPairOfItsOwn)
   const Interface floor{{{{"top", "top_right"}, {"bottom_up"}}}};
   EXPECT_THAT(verdict(with(three, {floor})), testing::HasSubstr("the mesh is not conforming"));
   EXPECT_EQ(verdict(with(three, {floor, {{{{"right"}, {"left_right"}}}}})), "");
-  // The sides that face each other are in pairs, each with another.
+  // The sides that face each other are in pairs, but each with a different side.
   EXPECT_THAT(verdict(with(three, {floor, {{{{"right"}, {"right_right"}}}}, {{{{"left_right"}, {"left"}}}}})),
               testing::HasSubstr("overlap\n"));
 }
 
-/// The upper body meets a corner of each of two bodies that share no side with each other.
+/// The upper body meets a corner of each of two bodies that share no side.
 TEST(Interfaces, ThreeBodiesMayMeetInAPoint)
 {
   const MeshData<2> three =
@@ -125,7 +125,7 @@ TEST(Interfaces, RefinedMeshesKeepThem)
   refined_meshes_keep_their_interfaces<3>();
 }
 
-/// The facets of the mesh whose vertices all are where inside(x), as a group.
+/// The facets of the mesh all of whose vertices satisfy inside(x), as a group.
 template <int dim, class Inside>
 void add_group(MeshData<dim>& data, const std::string& name, const Inside& inside)
 {
@@ -155,7 +155,7 @@ int group(const mesh::Mesh<dim>& mesh, const std::string& name)
   return static_cast<int>(std::ranges::find(mesh.boundary_names(), name) - mesh.boundary_names().begin());
 }
 
-/// The mesh without the facets of the joints that are not named.
+/// The mesh without the facets of unnamed joints.
 template <int dim>
 MeshData<dim> with_joints(const std::vector<std::string>& names)
 {
@@ -180,7 +180,7 @@ mesh::Mesh<dim> cut(MeshData<dim> data, const std::vector<std::string>& joints)
   return mesh::Mesh<dim>(std::move(data));
 }
 
-/// Cut along joints of the given areas, the grid has so many bodies, and as many vertices more.
+/// Cut along joints of the given areas, the grid has `n_bodies` bodies and `n_added` more vertices.
 template <int dim>
 void expect_cut(const std::map<std::string, double>& joints, int n_bodies, Index n_added)
 {

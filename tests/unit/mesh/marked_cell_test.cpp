@@ -1,4 +1,4 @@
-/// How bisection hands marked edges down: orientation, and the shapes that it leads to.
+/// Inheritance of marked edges in bisection: orientation, and the resulting shapes.
 
 #include "tribound/mesh/marked_cell.h"
 
@@ -19,7 +19,7 @@ namespace tribound::test
 namespace
 {
 
-/// A cell by itself: points and bisection type.
+/// A single cell: points and bisection type.
 template <int dim>
 struct Simplex
 {
@@ -51,7 +51,7 @@ Simplex<dim> child_of(const Simplex<dim>& parent, int kept)
   return {mesh::points_of<dim>(points, result.vertices), result.type};
 }
 
-/// The shape up to similarity and reflection, the vertices in the given order: squared lengths of the edges
+/// The shape up to similarity and reflection, with the vertices in the given order: squared edge lengths
 /// relative to their sum, rounded.
 template <int dim>
 std::vector<long> shape(const std::array<Point<dim>, dim + 1>& points, const std::array<int, dim + 1>& order)
@@ -136,9 +136,9 @@ TYPED_TEST(Marked, ChildrenArePositivelyOrientedHalves)
   }
 }
 
-/// Triangles have 4. Of tetrahedra whose marked edges lie in one plane or form a path (types 4, 8 and 5, 7)
-/// there are 36: bisection runs through these types in turn. The children of any other tetrahedron are of
-/// such a type. All shapes are there after 7 bisections.
+/// Triangles have 4. Tetrahedra whose marked edges lie in one plane or form a path (types 4, 8 and 5, 7) have
+/// 36: bisection runs through these types in turn. The children of any other tetrahedron have such a type.
+/// All shapes are there after 7 bisections.
 TYPED_TEST(Marked, DescendantsHaveFewShapes)
 {
   constexpr int dim = TypeParam::value;
@@ -156,8 +156,8 @@ TYPED_TEST(Marked, DescendantsHaveFewShapes)
   }
 }
 
-/// The mark of a face must be the same from both sides, whatever the order of the vertices, also where
-/// lengths are equal or differ by round-off only.
+/// The mark of a face must be the same from both sides, whatever the order of the vertices, even if lengths
+/// are equal or differ only by round-off.
 TEST(MarkedFirst, FacesAreMarkedTheSameFromBothSides)
 {
   const double a = 1.0 / 3;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What the tests of meshes share: files that vanish after the test, errors with expected words, measures, a
-/// mesh without any symmetry.
+/// Shared by the tests of meshes: files that vanish after the test, errors with expected words, measures, a
+/// mesh without symmetry.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@
 namespace tribound::testing_mesh
 {
 
-/// A directory of its own for every test and process, so that tests can run side by side.
+/// A separate directory for every test and process, so that tests can run side by side.
 class Directory
 {
  public:

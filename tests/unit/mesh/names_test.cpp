@@ -1,5 +1,5 @@
 /// @file names_test.cpp
-/// Names of cells and vertices, and curves through space.
+/// Names of cells and vertices, and space-filling curves.
 
 #include <gtest/gtest.h>
 
@@ -46,12 +46,12 @@ TEST(VertexName, OfAMiddleIsThatOfBothSides)
   EXPECT_EQ(mesh::middle(a, b), mesh::middle(b, a));
   EXPECT_NE(mesh::middle(a, b), mesh::middle(a, beside_b));
   EXPECT_EQ(mesh::middle(a, b).position, mesh::middle(a, beside_b).position);
-  // A vertex of one body where the middle of an edge of another comes to lie.
+  // A vertex of one body that coincides with an edge midpoint of another.
   EXPECT_NE(mesh::middle(a, b), mesh::vertex_name<2>(mesh::middle(a, b).point(), 3));
   EXPECT_NE(mesh::middle(b, b), mesh::middle(beside_b, beside_b));
 }
 
-/// Neighbours along Hilbert's curve are neighbours in space.
+/// Neighbours along the Hilbert curve are neighbours in space.
 template <int dim>
 void expect_continuous_curve(int n)
 {

@@ -45,7 +45,7 @@ mesh::Mesh<dim> bisected_at_random(int levels, int times, unsigned seed)
   return mesh;
 }
 
-/// The mesh after bisecting a cell at vertex 0 so many times.
+/// The mesh after bisecting a cell at vertex 0 the given number of times.
 template <int dim>
 mesh::Mesh<dim> graded(mesh::Mesh<dim> mesh, int times)
 {
@@ -57,7 +57,7 @@ mesh::Mesh<dim> graded(mesh::Mesh<dim> mesh, int times)
   return mesh;
 }
 
-/// Whether every vertex of a cell lies in a cell of another mesh.
+/// Whether every vertex of a cell lies in a given cell of another mesh.
 template <int dim>
 bool lies_in(const mesh::Mesh<dim>& mesh, Index cell, const mesh::Mesh<dim>& other, Index other_cell)
 {
@@ -81,8 +81,8 @@ TYPED_TEST(Overlay, OfTwoCellsOneContainsTheOtherAndAllIsCovered)
   constexpr int dim = TypeParam::value;
   for (unsigned seed = 1; seed <= 5; ++seed)
   {
-    // Steps of one and of dim bisections, many and few: the forest is the same. The first mesh is finer at a
-    // vertex, the second one elsewhere.
+    // Steps of one or of dim bisections, many or few, belong to the same forest. The first mesh is finer at a
+    // vertex, the second elsewhere.
     const mesh::Mesh<dim> a = graded(bisected_at_random<dim>(3, 1, seed), 15);
     const mesh::Mesh<dim> b = bisected_at_random<dim>(3, dim, 100 + seed);
     std::vector<double> covered_a(a.n_cells(), 0.0);
@@ -119,7 +119,7 @@ TYPED_TEST(Overlay, OfAMeshWithItself)
   }
 }
 
-/// Towards a corner, forty times: sizes differ by 2^40.
+/// Graded towards a corner, forty times: sizes differ by 2^40.
 TYPED_TEST(Overlay, OfAMeshGradedStrongly)
 {
   constexpr int dim = TypeParam::value;

@@ -1,4 +1,5 @@
-/// Nearest points of second-order facets: of all there are, on the right side, at rims and corners, too.
+/// Nearest points of second-order facets: nearest over all facets, with the right side, also at rims and
+/// corners.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ const Where in_case = {.file = "case.toml", .key = "shape.s.mesh"};
 template <int dim>
 using Nodes = std::array<Point<dim>, mesh::n_facet_nodes<dim>>;
 
-/// Facets that have no nodes in common.
+/// Facets without common nodes.
 template <int dim>
 mesh::QuadraticFacets loose(const std::vector<Nodes<dim>>& all)
 {
@@ -76,7 +77,7 @@ std::vector<Point<dim>> samples(const Nodes<dim>& nodes, int n)
   return points;
 }
 
-/// Of any shape and size, some bent by more than half of their length.
+/// Facets of any shape and size, some bent by more than half their length.
 template <int dim>
 class RandomFacets
 {
@@ -121,7 +122,7 @@ class QuadraticFoot : public testing::Test
 };
 TYPED_TEST_SUITE(QuadraticFoot, test::Dimensions);
 
-/// No sample is nearer, the point is on the facets, and from near, far and the facets themselves.
+/// No sample is nearer, and the point found lies on the facets; from points near, far, and on the facets.
 TYPED_TEST(QuadraticFoot, NoPointIsNearer)
 {
   constexpr int dim = TypeParam::value;
@@ -156,8 +157,8 @@ TYPED_TEST(QuadraticFoot, NoPointIsNearer)
   }
 }
 
-/// Also where there are many: at the centre of a ball and near it, on the axis of a cylinder, whatever
-/// facets are.
+/// Nearest points are found even where there are many: at and near the centre of a ball, on the axis of a
+/// cylinder.
 TYPED_TEST(QuadraticFoot, CentresOfCurvatureHaveOne)
 {
   constexpr int dim = TypeParam::value;
@@ -189,7 +190,7 @@ TYPED_TEST(QuadraticFoot, CentresOfCurvatureHaveOne)
 
 constexpr int bottom = 2;
 
-/// A block of which the lower side is part of the sphere around (0, 1, 0) with radius 1, n facets along it.
+/// A block whose lower side is part of the sphere around (0, 1, 0) with radius 1, with n facets along it.
 template <int dim>
 mesh::QuadraticSurface<dim> bowl(int n)
 {
@@ -212,7 +213,7 @@ mesh::QuadraticSurface<dim> bowl(int n)
   return {*mesh.labels().quadratic_facets, std::array{bottom}, in_case};
 }
 
-/// On both sides; far from the facets, too, but for their centre.
+/// On both sides, and also far from the facets, except at their centre.
 TYPED_TEST(QuadraticFoot, DistancesFromASphereConverge)
 {
   constexpr int dim = TypeParam::value;
@@ -248,14 +249,14 @@ TYPED_TEST(QuadraticFoot, DistancesFromASphereConverge)
   EXPECT_LT(errors[2], 1e-5);
 }
 
-/// Nearly all points of the surface are equally near.
+/// Nearly all points of the surface are equally near to it.
 TYPED_TEST(QuadraticFoot, TheCentreOfASphereIsOneRadiusAway)
 {
   constexpr int dim = TypeParam::value;
   EXPECT_NEAR(bowl<dim>(8).foot(Point<dim>(Point<dim>::Unit(1))).distance, -1, 1e-4);
 }
 
-/// Beyond it the tangents go on.
+/// Beyond its rim the surface continues along its tangents.
 TYPED_TEST(QuadraticFoot, TheSurfaceGoesOnBeyondItsRim)
 {
   constexpr int dim = TypeParam::value;
@@ -271,14 +272,14 @@ TYPED_TEST(QuadraticFoot, TheSurfaceGoesOnBeyondItsRim)
   for (const double off : {-0.1, 0.0, 0.1})
   {
     const auto foot = surface.foot(rim + 0.2 * along + off * outward);
-    // In 3D nodes on edges of the rim are farther out than the others.
+    // In 3D, nodes on the edges of the rim lie farther out than the others.
     EXPECT_NEAR((foot.point - rim).norm(), 0, dim == 2 ? 1e-14 : 1e-2);
     EXPECT_NEAR(foot.distance, off, 2e-3);
     EXPECT_NEAR((foot.normal - (foot.point - centre)).norm(), 0, 5e-3);
   }
 }
 
-/// Two straight facets at right angles, and their outside on the wider side.
+/// Two straight facets at right angles; outside is the wider side.
 TEST(QuadraticFoot2D, CornersHaveASide)
 {
   mesh::QuadraticFacets facets;

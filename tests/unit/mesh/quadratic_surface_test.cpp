@@ -1,4 +1,4 @@
-/// Second-order facets: what a mesh keeps of them, and the surface they make.
+/// Second-order facets: what a mesh keeps of them, and the surface they form.
 
 #include <random>
 
@@ -19,14 +19,14 @@ namespace
 constexpr int bottom = 2;
 const Where in_case = {.file = "case.toml", .key = "shape.s.mesh"};
 
-/// The height of the lower side, quadratic.
+/// The quadratic height of the lower side.
 template <int dim>
 double height(const Point<dim>& x)
 {
   return 0.2 * x[0] * x[0] - 0.1 * x[0] + (dim == 3 ? 0.1 * x[0] * x[2 % dim] + 0.15 * x[2 % dim] : 0);
 }
 
-/// A box of which the lower side is bent to the height of `curve`, with the nodes of order 2 there.
+/// A box whose lower side is bent to the height of `curve`, with second-order nodes there.
 template <int dim, class Curve>
 mesh::MeshData<dim> bent_box(int n, const Curve& curve)
 {
@@ -96,7 +96,8 @@ TYPED_TEST(QuadraticSurface, RefinedMeshesKeepIt)
   }
 }
 
-/// Round a centre above: normals are radial to second order, of length 1, out of the body.
+/// On a sphere about a centre above: normals are radial to second order, of length 1, and point out of the
+/// body.
 TYPED_TEST(QuadraticSurface, NormalsConverge)
 {
   constexpr int dim = TypeParam::value;
@@ -121,8 +122,8 @@ TYPED_TEST(QuadraticSurface, NormalsConverge)
   EXPECT_LT(errors[1], 0.02);
 }
 
-/// Numbered at random, as the vertices of facets come in any order; across edges, and off the facets by
-/// rounding.
+/// Continuous across edges, and for points off the facets by rounding. Numbering is random, as the vertices
+/// of facets come in any order.
 TYPED_TEST(QuadraticSurface, IsContinuous)
 {
   constexpr int dim = TypeParam::value;
@@ -149,7 +150,7 @@ TYPED_TEST(QuadraticSurface, IsContinuous)
   }
 }
 
-/// Over parts of facets: values, and derivatives by differences of the polynomial, which are exact.
+/// Over parts of facets: values, and derivatives by differences, which are exact for the polynomial.
 TYPED_TEST(QuadraticSurface, IsEnclosed)
 {
   constexpr int dim = TypeParam::value;
@@ -251,7 +252,7 @@ TYPED_TEST(QuadraticSurface, WhatMakesNoSurfaceIsNamed)
               testing::HasSubstr("no facets of second order"));
 }
 
-/// A joint bent inside of the body: both sides get the nodes, with normals against each other.
+/// A curved joint inside the body: both sides get the nodes, with opposite normals.
 TEST(QuadraticFacets, JointsAreCutOpenWithTheirNodes)
 {
   mesh::MeshData<2> data = test::box<2>({0, 0}, {1, 1}, {2, 2});

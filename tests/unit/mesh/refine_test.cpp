@@ -32,7 +32,7 @@ class Refine : public ::testing::Test
 };
 TYPED_TEST_SUITE(Refine, Dimensions);
 
-/// Coordinates as a key: the same for points that differ by round-off.
+/// Coordinates as a key, equal for points that differ by round-off.
 template <int dim>
 std::array<long, dim> key(const Point<dim>& x)
 {
@@ -41,7 +41,7 @@ std::array<long, dim> key(const Point<dim>& x)
   return rounded;
 }
 
-/// Facets told apart by the coordinates of their centres alone.
+/// Facets identified only by the coordinates of their centres.
 template <int dim>
 std::map<std::array<long, dim>, int> cells_per_facet_centre(const mesh::Mesh<dim>& mesh)
 {
@@ -59,8 +59,7 @@ std::map<std::array<long, dim>, int> cells_per_facet_centre(const mesh::Mesh<dim
 TYPED_TEST(Refine, IsConformingByCoordinates)
 {
   constexpr int dim = TypeParam::value;
-  const mesh::Refined<dim> refined =
-      mesh::refine_uniformly(irregular_mesh<dim>(), 2);  // verifies itself, too
+  const mesh::Refined<dim> refined = mesh::refine_uniformly(irregular_mesh<dim>(), 2);  // verifies itself
   std::set<std::array<long, dim>> places;
   for (const Point<dim>& x : refined.mesh.vertices()) places.insert(key<dim>(x));
   EXPECT_EQ(places.size(), static_cast<std::size_t>(refined.mesh.n_vertices()));
@@ -133,8 +132,8 @@ TEST(RefineShapes, TrianglesStaySimilar)
   EXPECT_NEAR(smallest_angle(mesh::refine_uniformly(mesh, 4).mesh), smallest_angle(mesh), 1e-9);
 }
 
-/// Of a tetrahedron of any shape the children differ from it once; from then on no new shapes worth the name
-/// appear. The meshes: Kuhn's tetrahedra, distorted ones, a flat one.
+/// The children of a tetrahedron differ in shape from their parent only once; after that no significantly new
+/// shapes appear. The meshes: Kuhn's tetrahedra, distorted ones, a flat one.
 TEST(RefineShapes, AnglesOfTetrahedraAreBoundedOverFourLevels)
 {
   mesh::MeshData<3> flat = mapped(box<3>({0, 0, 0}, {1, 1, 1}, {1, 1, 1}),
@@ -169,7 +168,7 @@ std::multiset<std::vector<double>> cells_in_space(const mesh::Mesh<3>& mesh)
   return cells;
 }
 
-/// Every octahedron in Kuhn's tetrahedra has two shortest diagonals.
+/// Every octahedron in a Kuhn tetrahedron has two shortest diagonals.
 TEST(RefineShapes, TheNumberingDoesNotMatter)
 {
   const mesh::MeshData<3> data = box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 1});

@@ -13,7 +13,7 @@ namespace tribound
 namespace
 {
 
-/// The definition, through std::map.
+/// The topology by its definition, with std::map.
 template <int dim>
 mesh::Topology<dim> by_definition(Index n_vertices, std::span<const mesh::Cell<dim>> cells)
 {
@@ -81,7 +81,7 @@ void expect_same(const mesh::Topology<dim>& actual, const mesh::Topology<dim>& e
   EXPECT_EQ(actual.vertex_cells, expected.vertex_cells);
 }
 
-/// Cells with vertices renumbered and listed at random, so that no order of the box helps.
+/// Cells with vertices renumbered and listed at random, so that no order of the box remains.
 template <int dim>
 std::vector<mesh::Cell<dim>> shuffled(const mesh::MeshData<dim>& data)
 {

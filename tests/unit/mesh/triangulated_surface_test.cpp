@@ -1,6 +1,5 @@
 /// @file triangulated_surface_test.cpp
-/// Surfaces made of triangles against the sphere and the box they are made from, and against trying every
-/// triangle.
+/// Surfaces of triangles, against the sphere and the box they approximate and against trying every triangle.
 
 #include "tribound/mesh/triangulated_surface.h"
 
@@ -28,7 +27,7 @@ struct Triangles
   std::vector<TriangulatedSurface::Triangle> triangles;
 };
 
-/// An octahedron halved n times, its vertices moved to the unit sphere.
+/// An octahedron refined n times, with its vertices moved to the unit sphere.
 Triangles ball(int n)
 {
   Triangles result;
@@ -81,8 +80,8 @@ TEST(TriangulatedSurface, ABallIsNearlyASphere)
   }
 }
 
-/// The normals point outward whichever way the triangles are turned, and distances are those of a box,
-/// at its faces, edges and corners.
+/// Normals point outward whatever the orientation of the triangles; distances are those of a box, at its
+/// faces, edges and corners.
 TEST(TriangulatedSurface, ABoxHasItsDistances)
 {
   Triangles box;

@@ -1,4 +1,4 @@
-/// Every flaw that the verification of a mesh must find, and what it must not take for one.
+/// Every flaw that the verification of a mesh must find, and what it must not take for a flaw.
 
 #include <functional>
 #include <limits>
@@ -12,7 +12,7 @@ namespace tribound
 namespace
 {
 
-/// A valid mesh, what spoils it, and what the message must say.
+/// A valid mesh, a change that spoils it, and required parts of the message.
 template <int dim>
 struct Flaw
 {
@@ -40,7 +40,7 @@ void expect_found(const Flaw<dim>& flaw)
   for (const std::string& word : flaw.words) EXPECT_THAT(message, testing::HasSubstr(word));
 }
 
-/// Adds the vertices and one cell with region 0.
+/// Adds the vertices and one cell of region 0.
 template <int dim>
 void add_cell(mesh::MeshData<dim>& data, const std::vector<Point<dim>>& vertices, const mesh::Cell<dim>& cell)
 {

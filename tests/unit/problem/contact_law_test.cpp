@@ -1,6 +1,6 @@
 /// @file contact_law_test.cpp
-/// What every contact law promises, for all of them and both dimensions: the tangent is the derivative of the
-/// response, tractions obey the law, and the cone is what the limit is where the contact is closed.
+/// Properties of every contact law in both dimensions: the tangent is the derivative of the response,
+/// tractions obey the law, and the cone agrees with the limit where contact is closed.
 
 #include "tribound/problem/contact_law.h"
 
@@ -85,7 +85,7 @@ TEST(ContactLaw, TangentIsTheDerivativeAndTheTractionObeysTheLaw)
       }
 }
 
-/// Terzaghi: the law holds of T + p_w n. On an open joint without cohesion water alone acts, against n.
+/// Terzaghi: the law holds for T + p_w n. On an open joint without cohesion only water acts, against n.
 template <int dim>
 void expect_effective(const ContactLaw& law, std::mt19937& dice)
 {
@@ -133,7 +133,7 @@ TEST(ContactLaw, HoldsOfTheEffectiveTraction)
     }
 }
 
-/// What is between points, or comes from another mesh, need not be a state.
+/// A value interpolated between points, or from another mesh, need not be an admissible state.
 TEST(ContactLaw, CutsStatesThatNoStepLeaves)
 {
   const ContactLaw law = problem::JointLaw({.cohesion = 0.7, .slip_length = 2});

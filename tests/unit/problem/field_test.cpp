@@ -102,7 +102,7 @@ TEST(Field, FollowsTheLoadFactor)
   EXPECT_EQ(later.degree(), 1);
   const problem::Field folded = problem::Field("t*(4 - t)", Where{}).at(4);
   EXPECT_TRUE(folded.is_zero());
-  EXPECT_EQ(folded.at(2).constant(), 4);  // it is still the formula
+  EXPECT_EQ(folded.at(2).constant(), 4);  // still the formula
   EXPECT_FALSE(problem::Field("2*x", Where{}).uses_time());
   EXPECT_EQ(problem::Field("2*x", Where{}).at(5)(Point<2>(1, 0)), 2);
   EXPECT_THROW((void)problem::Field("1/t", Where{}).at(0), InputError);
@@ -190,7 +190,7 @@ TEST(Field, ConvertsNumbers)
   EXPECT_TRUE(half.is_enclosed());
 }
 
-/// x y, with the enclosure of its values over a box.
+/// x y, with an enclosure of its values over a box.
 problem::FieldFunction product()
 {
   problem::FieldFunction function;

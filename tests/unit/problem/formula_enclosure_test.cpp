@@ -112,7 +112,7 @@ TEST(Enclosure, OfACellCutAlongASwitchIsSmooth)
     expect_range(enclose(text, right, 2, 1)[0], 0, 0.05);
     EXPECT_TRUE(enclose(text, right, 2, 1)[1].bounded()) << text;
   }
-  // A facet on the switch: what is compared decides where it is computed without rounding.
+  // A facet on the switch: the comparison decides if its operands are computed without rounding.
   EXPECT_EQ(enclose("y >= 0 ? 2 : 1", {0, 0, 1, 0}, 2, 0)[0].lower, 2.0);
   EXPECT_EQ(enclose("y > 0 ? 2 : 1", {0, 0, 1, 0}, 2, 0)[0].upper, 1.0);
   EXPECT_EQ(enclose("y - 0.1 <= 0", {0, 0.1, 1, 0.1}, 2, 0)[0].lower, 1.0);
@@ -147,7 +147,7 @@ TEST(Enclosure, OfARootIsBoundedDownToZero)
   EXPECT_TRUE(enclose("sqrt(x)", triangle, 2, 15)[15].bounded());
 }
 
-/// With the coordinates put in as their own series, to rounding; a quadratic one as if written out.
+/// Composition with the coordinates' own series agrees up to rounding; a quadratic one is as if written out.
 TEST(Enclosure, OfACompositionIsThatOfTheFormulaWrittenOut)
 {
   const auto composed = [](const std::string& text, const std::vector<std::string>& coordinates)
@@ -175,7 +175,7 @@ TEST(Enclosure, OfACompositionIsThatOfTheFormulaWrittenOut)
   for (const std::string text : {"exp(x/9)*y + 3", "sqrt(x^2+y^2)", "7", "x > 0 ? y/x : 1"})
     expect_same(composed(text, {"x", "y"}), enclose(text, triangle, 2, 4));
   expect_same(composed("exp(x) + z", {"x^2/9", "y"}), enclose("exp(x^2/9)", triangle, 2, 4));
-  expect_range(composed("2*x - y", {"x", "y"})[0], -1, 6);  // of each coordinate for itself
+  expect_range(composed("2*x - y", {"x", "y"})[0], -1, 6);  // each coordinate is bounded on its own
   EXPECT_FALSE(composed("abs(x - 2)", {"x", "y"})[1].bounded());
 }
 

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 
 const Where in_case_file{"case.toml", "load.body", 3, 1};
 
-/// The same formula by muParser, of which some functions lose digits, and the optimiser takes 0.3 && 1 for
+/// The same formula in muParser, which loses digits in some functions and whose optimiser takes 0.3 && 1 for
 /// false.
 class Reference
 {
@@ -62,8 +62,8 @@ bool agree(double a, double b, double tolerance)
   return a == b || std::abs(a - b) <= tolerance;
 }
 
-/// By how much the value changes where x changes by a few units in the last place: no other evaluation is
-/// nearer than that.
+/// The change of the value when x changes by a few units in the last place: no other evaluation can be
+/// expected to agree better.
 double sensitivity(const problem::Formula& formula, const std::array<double, 3>& x)
 {
   const double value = formula(x);
@@ -209,7 +209,7 @@ TEST(Formula, KnowsItsDegree)
     EXPECT_EQ(problem::Formula(text, in_case_file).degree(), degree) << text;
 }
 
-/// "a0 a1 a2 b; ..." of the switches, each divided by its first coefficient that is not 0.
+/// "a0 a1 a2 b; ..." for the switches, each divided by its first non-zero coefficient.
 std::string switches(const std::string& text)
 {
   std::string result;

@@ -1,6 +1,6 @@
 /// @file interface_law_test.cpp
-/// Laws of interfaces with a memory at one point: numbers of an independent program, derivatives against
-/// differences in every branch, and what every law promises along random paths.
+/// History-dependent interface laws at one point: results of an independent program, derivatives against
+/// differences in every branch, and properties of every law along random paths.
 
 #include "tribound/problem/interface_law.h"
 
@@ -51,7 +51,7 @@ Law law_of(const Json& c)
   return problem::Endo{p["Kn"], p["Kt"], p["mu"], p["Bn"], p["Bt"], p["D1"]};
 }
 
-/// A frame (n, t_1, ...) that is not along the axes.
+/// A frame (n, t_1, ...) not aligned with the axes.
 template <int dim>
 Tensor<dim> frame()
 {
@@ -121,7 +121,7 @@ TEST(InterfaceLaws, AreThoseOfAnIndependentProgram)
   EXPECT_EQ(n, 26 * 5 * 6);
 }
 
-/// Laws with every feature, alone and together.
+/// Laws with every feature, alone and combined.
 std::vector<Law> all_laws()
 {
   const double never = std::numeric_limits<double>::infinity();
@@ -180,7 +180,7 @@ void on_random_paths(const std::function<void(const Law&, const LawPoint<dim>&, 
     }
 }
 
-/// Wherever differences to both sides agree, that is away from kinks, in all branches that paths come to.
+/// Checks derivatives where differences to both sides agree (away from kinks), in all branches on the paths.
 template <int dim>
 void expect_derivatives()
 {
@@ -214,8 +214,8 @@ TEST(InterfaceLaws, DerivativesAreThoseOfTheTraction)
   expect_derivatives<3>();
 }
 
-/// The committed state gives the same traction at the same P, or a body under constant load would creep.
-/// What the law says does not depend on what the program keeps: opening and slip obey it.
+/// The committed state must give the same traction at the same P; otherwise a body under constant load would
+/// creep. The law holds whatever the program keeps: opening and slip obey it.
 template <int dim>
 void expect_promises()
 {
@@ -256,7 +256,7 @@ TEST(InterfaceLaws, KeepTheirPromisesOnRandomPaths)
   expect_promises<3>();
 }
 
-/// Pulled apart in steps of any size, a bond takes Gc.
+/// Pulling a bond apart takes Gc, whatever the size of the steps.
 TEST(InterfaceLaws, BreakingTakesTheFractureEnergy)
 {
   for (const Unloading unloading : {Unloading::origin, Unloading::vertical})
@@ -280,9 +280,8 @@ TEST(InterfaceLaws, BreakingTakesTheFractureEnergy)
   }
 }
 
-/// In shear gamma_t = beta^2 gamma may be below the slope of softening: gamma has to exceed it, and is enough
-/// for the law to be met, t_eff = ft (1 - delta_eff / delta_c) with |T^t| = beta t_eff, delta_eff = beta
-/// |delta^t|.
+/// In shear gamma_t = beta^2 gamma may be below the softening slope. The law holds if only gamma exceeds the
+/// slope: t_eff = ft (1 - delta_eff / delta_c) with |T^t| = beta t_eff, delta_eff = beta |delta^t|.
 TEST(InterfaceLaws, MixedNeedsGammaAboveItsSlope)
 {
   const problem::Mixed law{{1.0, 0.8, Unloading::origin}, 0.5, 0};
@@ -302,7 +301,7 @@ TEST(InterfaceLaws, MixedNeedsGammaAboveItsSlope)
   }
 }
 
-/// Under constant pressure slip alone takes c slip_c / 2 and what friction takes, however it is divided.
+/// Under constant pressure, slip alone takes c slip_c / 2 plus the work of friction, whatever its steps.
 TEST(InterfaceLaws, SlidingTakesTheCohesion)
 {
   const problem::Joint law{{}, 1.2, 1.1, 0.5, false};
@@ -324,7 +323,7 @@ TEST(InterfaceLaws, SlidingTakesTheCohesion)
   }
 }
 
-/// Strengths of the thesis' law for its constants, and the energy of its damage.
+/// Strengths of the law of the thesis for its constants, and the energy of its damage.
 TEST(InterfaceLaws, EndoSoftensFromItsStrengths)
 {
   const problem::Endo law{5, 4, 0.8, 0.3, 0.12, 0.003};

@@ -79,7 +79,7 @@ TEST(Interval, ArithmeticHoldsRounding)
   EXPECT_NEAR((straddling * straddling).upper, 9, 1e-14);
 }
 
-/// inf * 0 is nan, which comparisons lose.
+/// inf * 0 is nan, and comparisons lose a nan.
 TEST(Interval, AnOverflowIsNotForgotten)
 {
   const double infinity = std::numeric_limits<double>::infinity();

@@ -1,5 +1,5 @@
 /// @file projection_test.cpp
-/// The two projections: closed values, variational property, derivatives against differences.
+/// The two projections: closed-form values, variational property, derivatives against differences.
 
 #include "tribound/problem/projection.h"
 

@@ -39,7 +39,7 @@ Vertices random_simplex(RandomFormulas& random, int dim, int n_vertices)
   return vertices;
 }
 
-/// The point with random barycentric coordinates, drawn towards the centre by `shrink`.
+/// A point with random barycentric coordinates, moved towards the centre by `shrink`.
 Coordinates random_point(RandomFormulas& random, const Vertices& vertices, int dim, double shrink = 1.0)
 {
   const int n = static_cast<int>(vertices.size()) / dim;
@@ -68,8 +68,8 @@ struct Series
   std::array<long double, 15> error;
 };
 
-/// Coefficients of the polynomial in t through the values of f(xi + t d) at t = -7h, ..., 7h (Newton's form):
-/// those of the Taylor series up to the error of interpolation.
+/// Coefficients of the polynomial in t that interpolates f(xi + t d) at t = -7h, ..., 7h (Newton's form);
+/// they are those of the Taylor series up to the interpolation error.
 std::array<long double, 15> interpolated_series(const FormulaTree& f, const Coordinates& xi,
                                                 const Coordinates& d, long double h)
 {
@@ -100,8 +100,7 @@ std::array<long double, 15> interpolated_series(const FormulaTree& f, const Coor
   return c;
 }
 
-/// The Taylor series of f(xi + t d) by interpolation; where that does not converge, the error is large or
-/// nan.
+/// The Taylor series of f(xi + t d) by interpolation; without convergence the error is large or nan.
 Series taylor_series(const FormulaTree& f, const Coordinates& xi, const Coordinates& d)
 {
   constexpr long double h = 0.1L;
@@ -117,8 +116,8 @@ Series taylor_series(const FormulaTree& f, const Coordinates& xi, const Coordina
   return series;
 }
 
-/// Whether `enclosure` holds a value within rounding of `x`. It is asked where rounding decides: in y == x -
-/// (x - y).
+/// Whether `enclosure` holds a value of `formula` within rounding of `x`. Used where rounding decides, as in
+/// y == x - (x - y).
 bool contains_near(const problem::Enclosure& enclosure, const problem::Formula& formula, const Coordinates& x,
                    int dim)
 {

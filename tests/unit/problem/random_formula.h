@@ -11,13 +11,13 @@
 namespace tribound
 {
 
-/// A formula as a tree, by which a test evaluates it independently of the parser.
+/// A formula as a tree, for evaluation independent of the parser.
 struct FormulaTree
 {
-  std::string symbol;  ///< of an operator, a function, a variable or a number; "neg" for the sign
+  std::string symbol;  ///< of an operator, a function, a variable or a number; "neg" is the sign
   std::vector<FormulaTree> arguments;
 
-  /// Whether the parser folds it to a number.
+  /// Whether the parser folds the tree to a number.
   [[nodiscard]] bool is_constant() const
   {
     if (symbol == "?" && arguments[0].is_constant())
@@ -101,7 +101,7 @@ struct FormulaTree
   }
 };
 
-/// Makes formulas over the whole grammar.
+/// Makes random formulas over the whole grammar.
 class RandomFormulas
 {
  public:
@@ -127,8 +127,8 @@ class RandomFormulas
     return {"?", {tree(depth - 1, smooth), tree(depth - 1, smooth), tree(depth - 1, smooth)}};
   }
 
-  /// The text of the tree. Parentheses that it needs are left out with the given probability: it is another
-  /// formula then, which precedence and associativity decide.
+  /// The text of the tree. Necessary parentheses are left out with the given probability: then it is another
+  /// formula, which precedence and associativity decide.
   std::string text(const FormulaTree& tree, double left_out = 0.0)
   {
     const auto blank = [&] { return std::string(uniform(0, 1) < 0.2 ? " " : ""); };

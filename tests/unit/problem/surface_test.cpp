@@ -1,5 +1,5 @@
 /// @file surface_test.cpp
-/// Surfaces by formulas, and gaps and directions made from them, against geometry done by hand.
+/// Surfaces by formulas, and gaps and directions derived from them, against geometry by hand.
 
 #include "tribound/problem/surface.h"
 
@@ -32,8 +32,8 @@ double value(const std::string& text, const std::vector<double>& x)
   return problem::Formula(text, {})(x);
 }
 
-/// A surface's formulas fit together: phi is 0 at the nearest point, which lies at the distance |phi| along
-/// grad phi.
+/// The formulas of a surface are consistent: phi is 0 at the nearest point, which lies at the distance |phi|
+/// along grad phi.
 void expect_consistent(const Surface& surface, int dim)
 {
   std::mt19937 dice(5);
@@ -99,7 +99,7 @@ TEST(Surface, SignsSayWhereTheBodyIs)
   EXPECT_EQ(value(cylinder.normal[0], {7, 3, 4}), 0);
 }
 
-/// What is no distance is one to first order.
+/// An implicit function that is not a distance is one to first order.
 TEST(Surface, ImplicitSurfacesAreDividedByTheirGradient)
 {
   const Surface circle = problem::implicit("x^2 + y^2 - 4", 2, {});
@@ -163,7 +163,7 @@ TEST(NormalField, ManyPointsAtOnceGiveTheSame)
   EXPECT_THAT(message_of([&] { too_long.evaluate<3>(points, normals); }), HasSubstr("has the length 2 at"));
 }
 
-/// Deviations are above the distance from the best polynomials that there are, by sampling.
+/// Deviations exceed the distance from the best polynomials, found by sampling.
 TEST(NormalField, DeviationsAreBounds)
 {
   const std::vector<double> origin = {0, 0};
@@ -173,7 +173,7 @@ TEST(NormalField, DeviationsAreBounds)
   {
     const std::array<double, 4> ends = {-h / 2, -1, h / 2, -1};
     const problem::NormalDeviation found = problem::deviation(field, ends, 2);
-    // Of sin(a) from linear functions h^3/200 and more, of cos(a) from them h^2/16.
+    // From linear functions sin(a) deviates by h^3/200 or more, cos(a) by h^2/16.
     EXPECT_GE(found.linear, h * h / 17);
     EXPECT_LE(found.linear, h * h);
     EXPECT_LE(found.quadratic, h * h * h);

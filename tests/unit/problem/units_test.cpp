@@ -1,5 +1,5 @@
 /// @file units_test.cpp
-/// Labels of units against what engineers write.
+/// Unit labels, against those that engineers write.
 
 #include "tribound/problem/units.h"
 

@@ -1,5 +1,5 @@
 /// @file water_test.cpp
-/// The pressures of water in a joint, against their formulas.
+/// Water pressures in a joint, against formulas.
 
 #include "tribound/problem/water.h"
 
@@ -31,7 +31,7 @@ Seepage dam()
   return {.head = level("t"), .tail = level("5"), .weight = 0.01, .line = {{0, 2}, {60, 3}}};
 }
 
-/// s of a point of the line of dam() and beside it.
+/// The point at arc length s on the line of dam().
 Point<2> at(double s)
 {
   const double length = std::sqrt(3601);
@@ -81,7 +81,7 @@ TEST(Water, DrainsAndCracks)
   EXPECT_NEAR(cracked(at(10)), at_drain, 1e-15);
   EXPECT_NEAR(cracked(at((10 + length) / 2)), (toe + at_drain) / 2, 1e-14);
   EXPECT_EQ(cracked.at(80).crack_tip(), 4);
-  // A tip at the drain takes it away.
+  // A crack tip at the drain disables the drain.
   EXPECT_NEAR(cracked.with_crack_tip(10)(at((10 + length) / 2)), (heel + toe) / 2, 1e-14);
   EXPECT_NEAR(cracked.with_crack_tip(length)(at(length - 0.1)), heel, 1e-15);
   seepage.crack = false;
@@ -91,7 +91,7 @@ TEST(Water, DrainsAndCracks)
   EXPECT_NEAR(Water(seepage).at(80)(at(10)), toe + 0.4 * (heel - toe), 1e-15);
 }
 
-/// What assembly and certificate are cut at.
+/// Kinks, where the quadrature of assembly and certificate is cut.
 TEST(Water, TellsItsKinks)
 {
   Seepage seepage = dam();

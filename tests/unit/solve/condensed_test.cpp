@@ -1,5 +1,5 @@
 /// @file condensed_test.cpp
-/// Newton's method on the contact boundary takes the steps that it takes with all unknowns.
+/// Newton's method on the contact boundary takes the same steps as with all unknowns.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ namespace
 
 const std::array<problem::ContactLaw, 3> laws{Frictionless(), Tresca(0.02), Coulomb(0.3)};
 
-/// Prescribed displacements that are not 0, on parts of the contact boundary too, loads, a gap.
+/// Non-zero prescribed displacements, also on parts of the contact boundary, loads, a gap.
 template <int dim>
 ProblemData<dim> held_block(const problem::ContactLaw& law)
 {
@@ -29,7 +29,7 @@ ProblemData<dim> held_block(const problem::ContactLaw& law)
                          obstacle<dim>("bottom", law, formula("0.002*x"))}};
 }
 
-/// Held by contact alone against a rigid motion downwards, and when it slides by nothing else.
+/// Only contact holds the block against moving downwards; when it slides, nothing else holds it.
 ProblemData<2> resting_block(const problem::ContactLaw& law)
 {
   return {.boundaries = {fixed<2>("left", 0, std::nullopt), loaded<2>("top", 0, -0.1),
@@ -133,7 +133,7 @@ TEST(Condensed, SharesItsFactors)
   EXPECT_EQ(again.u, first.u);
 }
 
-/// A strip with contact along both sides keeps most unknowns: 12 n^{1/2} is less.
+/// A strip with contact along both sides keeps most unknowns: more than 12 n^{1/2}.
 TEST(Condensed, IsForShortContactBoundaries)
 {
   const auto chosen = [](const mesh::MeshData<2>& data, const std::string& contact, bool from_scratch)

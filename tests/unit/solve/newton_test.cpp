@@ -27,7 +27,7 @@ using ::testing::HasSubstr;
 
 const std::vector<problem::ContactLaw> laws{Frictionless(), Tresca(0.02), Coulomb(0.3)};
 
-/// A block clamped on the left, pressed on a floor that it meets in part, pulled at its right side.
+/// A block clamped on the left, pressed on a floor that it meets in part, and pulled at its right side.
 template <int dim>
 ProblemData<dim> lifted_block(const problem::ContactLaw& law)
 {
@@ -74,7 +74,7 @@ void expect_solved(int p, const problem::ContactLaw& law)
     EXPECT_EQ(result.steps[k].step, static_cast<int>(k) + 1);
 }
 
-/// A start for another solve is spared the tight solve at the end.
+/// The tight solve at the end is skipped when only a start for another solve is needed.
 TEST(Newton, LeavesTheTractionLooseWhereOnlyAStartIsWanted)
 {
   const algebra::SolverOptions multigrid{.method = algebra::LinearMethod::iterative};
@@ -107,7 +107,7 @@ TEST(Newton, SolvesEveryLaw)
 }
 
 /// a(u^k, v) - (t^k, v)_C = L(v) at every iterate, converged or not, whatever the damping. Returns the
-/// smallest damping that occurred.
+/// smallest damping factor that occurred.
 template <int dim>
 double expect_balance_at_every_iterate(const problem::ContactLaw& law, const mesh::MeshData<dim>& mesh,
                                        const adapt::Method& method)
@@ -173,7 +173,7 @@ TEST(Newton, EveryLinearSolverGivesTheSameSolution)
   }
 }
 
-/// Each step with factors of its own: Newton restarted at every iterate must go the same way as one that
+/// Newton restarted at every iterate, with its own factors in each step, must take the same path as one that
 /// keeps factors.
 TEST(Newton, KeptFactorsDoNotChangeTheIterates)
 {
@@ -249,8 +249,8 @@ TEST(Newton, NoLoadNoDisplacement)
   EXPECT_EQ(norm(result.u), 0);
 }
 
-/// The corner points of the contact facet are held: no free degree of freedom feels the contact traction, and
-/// the first step, closed and sticking, leaves no residual. The contact is open all the same.
+/// The corner points of the contact facet are fixed: no free degree of freedom feels the contact traction,
+/// and the first step, closed and sticking, leaves no residual. Still, the contact is open.
 TEST(Newton, ConvergedMeansThatTheTractionIsThatOfTheSolution)
 {
   mesh::MeshData<2> data{{.region_names = {"body"}, .boundary_names = {"bottom", "sides"}},
