@@ -1,6 +1,6 @@
 /// @file adapt_3d_test.cpp
-/// What adaptivity gains in 3D: a body with a re-entrant edge, where the stress grows like r^-0.46, on a
-/// floor with friction, against uniform refinement.
+/// The gain by adaptivity in 3D over uniform refinement: a body on a floor with friction, with a re-entrant
+/// edge where the stress grows like r^-0.46.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Level
   double bound;
 };
 
-/// An L-shaped profile 2 x 2, 1 deep: a wall with an arm that is lifted, pressed on the floor.
+/// An L-shaped profile 2 x 2, 1 deep: a wall pressed on the floor, with an arm that is lifted.
 std::vector<Level> run(int p, double theta, int max_dofs)
 {
   const ProblemData<3> data{.boundaries = {fixed<3>("left", 0, free, free), fixed<3>("back", free, free),
@@ -58,7 +58,7 @@ double rate(const std::vector<Level>& levels, std::size_t back)
   return std::log(b.bound / a.bound) / std::log(b.dofs / a.dofs);
 }
 
-/// Isotropic cells reach N^(-1/3) for p = 1 and N^-0.54 for p = 2 at such an edge, uniform ones N^(-0.54/3).
+/// At such an edge, isotropic cells reach N^(-1/3) for p = 1 and N^-0.54 for p = 2, uniform ones N^(-0.54/3).
 TEST(Adapt3D, BeatsUniformMeshesAtAReEntrantEdge)
 {
   for (int p = 1; p <= 2; ++p)

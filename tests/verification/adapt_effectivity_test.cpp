@@ -1,6 +1,6 @@
 /// @file adapt_effectivity_test.cpp
-/// The bound on the meshes that the adaptive algorithm makes, graded towards singularities and kinks, against
-/// the dual norm of the residual: on every level, with the iterate at which Newton's method was stopped.
+/// The bound against the dual norm of the residual on adaptive meshes, graded towards singularities and
+/// kinks: on every level, for the iterate at which Newton's method was stopped.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 /// @file adapt_test.cpp
-/// The adaptive algorithm on problem T2D: optimal rates, few Newton steps, and the certificate it ends with
+/// The adaptive algorithm on problem T2D: optimal rates, few Newton steps, and a certificate at the end,
 /// whatever happens.
 
 #include "tribound/adapt/loop.h"
@@ -43,7 +43,7 @@ struct History
   certify::Verdict verdict;
 };
 
-/// Not converged on the last level: the criterion is what is tested.
+/// The last level is not converged further, since the criterion is tested.
 adapt::Method method(int p)
 {
   return {.degree = p, .newton = {.tolerance = 1e-12}, .stopping = {.finish = false}};
@@ -75,7 +75,7 @@ adapt::AdaptOptions until(double tolerance)
   return {.tolerance = tolerance, .marking = {.theta = 0.6}, .max_levels = 60};
 }
 
-/// The slope of log(bound) over log(dofs), least squares over the levels from `first` dofs on.
+/// The least-squares slope of log(bound) over log(dofs) on the levels from `first` dofs on.
 double slope(const std::vector<Row>& levels, double first)
 {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -89,7 +89,7 @@ double slope(const std::vector<Row>& levels, double first)
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// Uniform meshes give about -0.39 in each degree: singular at the ends of the clamped side.
+/// Uniform meshes give about -0.39 for each degree: the ends of the clamped side are singular.
 TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
 {
   const double tolerances[] = {0.006, 0.0004, 0.00004};
@@ -100,7 +100,7 @@ TEST(Adapt, TheBoundHasTheOptimalRateInDofs)
     EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
     const double rate = slope(history.levels, p == 1 ? 1000 : 500);
     EXPECT_NEAR(rate, -p / 2.0, deviations[p - 1]) << "p = " << p;
-    // From the carried solution; the first mesh starts from scratch, from a closed and sticking contact.
+    // From the carried solution; the first mesh starts from scratch, with contact closed and sticking.
     for (std::size_t level = 1; level < history.levels.size(); ++level)
       EXPECT_LE(history.levels[level].newton, 6u) << "p = " << p << ", level " << level;
     EXPECT_GT(history.levels.size(), 10u);
@@ -131,8 +131,8 @@ std::vector<std::vector<adapt::CertifiedStep>> steps_in_3d(adapt::Stopping crite
   return steps;
 }
 
-/// In 3D the patches away from Gamma_C are left alone where sigma_lin says that the iterate will not do; what
-/// is kept is certified by its own stress all the same.
+/// In 3D the patches away from Gamma_C are skipped if sigma_lin shows that the iterate will not do. The kept
+/// iterate is still certified by its own stress.
 TEST(Adapt, In3DOnlyIteratesThatMayBeKeptGetTheCompleteBound)
 {
   int without = 0;
@@ -218,7 +218,7 @@ TEST(Adapt, MaximumMarkingReachesTheToleranceToo)
   EXPECT_EQ(history.verdict.status, certify::RunStatus::certified) << history.verdict.reason;
 }
 
-/// The contact part is a tenth to a half of the bound here: its facets are refined for its own sake.
+/// The contact part is a tenth to a half of the bound here, so its facets are refined separately.
 TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
 {
   const auto run = [](bool separately)
@@ -233,7 +233,8 @@ TEST(Adapt, SeparateMarkingReachesTheToleranceToo)
   EXPECT_LE(separate.levels.back().dofs, 1.5 * together.levels.back().dofs);
 }
 
-/// On every cell is more than on the whole, less than to the last digit.
+/// The criterion on every cell takes more steps than the global one, fewer than convergence to the last
+/// digit.
 TEST(Adapt, TheLocalCriterionTakesStepsBetweenTheOthers)
 {
   const auto steps = [](adapt::Stopping stopping)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file affine.h
-/// Affine displacements in every state of contact: the solutions of the constant-stress patch tests.
+/// Affine displacements in every state of contact: solutions of the constant-stress patch tests.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,8 +32,8 @@ struct AffineCase
 inline const problem::Material affine_material = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
 
 /// All states. The displacement is (d (c + k.x + b y), D y) with the tangential direction d, in 3D not along
-/// an axis, and a slip c + k.x that varies along the contact but stays positive; shear mu b |d| at the
-/// bottom.
+/// an axis. The slip c + k.x varies along the contact but stays positive; the shear at the bottom is
+/// mu b |d|.
 template <int dim>
 std::vector<AffineCase<dim>> affine_cases()
 {
@@ -72,7 +72,7 @@ std::vector<AffineCase<dim>> affine_cases()
   };
 }
 
-/// The same physics in a frame turned by `q`.
+/// The same problem in a frame rotated by `q`.
 template <int dim>
 AffineCase<dim> turned(AffineCase<dim> c, const Tensor<dim>& q)
 {
@@ -109,7 +109,7 @@ double distance_from_affine(const fem::LagrangeSpace<dim>& space, std::span<cons
   return largest;
 }
 
-/// Displacement on all sides but the bottom and the right one, which carries the exact traction.
+/// Prescribed displacement on all sides but the bottom and the right; the right carries the exact traction.
 template <int dim>
 ProblemData<dim> affine_data(const AffineCase<dim>& c, const Point<dim>& right_normal)
 {

@@ -1,7 +1,7 @@
 /// @file algebraic_test.cpp
-/// What the linear solver leaves: rho and alg against the numbers of an independent program,
+/// The remainder of the linear solver: rho and alg against the numbers of an independent program,
 /// tests/verification/data/algebraic.json; the divergence of the stress; bounds of dual norms; iterations
-/// that end by it.
+/// stopped by it.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST_P(AlgebraicT2D, AgreesWithAnIndependentProgram)
   const certify::Stress<2> stress = certify::equilibrate<2>(c.form, u, t);
   const certify::Estimate eta =
       certify::Estimator<2>(c.form, certify::ContactRule::reference, of_4x2)(u, stress);
-  EXPECT_LE(eta.global.alg, expected["eta_alg"].get<double>() * (1 + 1e-8));  // the tree may have less
+  EXPECT_LE(eta.global.alg, expected["eta_alg"].get<double>() * (1 + 1e-8));  // the tree may give less
   expect_digits(of_4x2.value * certify::field_norm<2>(c.mesh, rho), expected["eta_alg"], "C_F ||rho||");
   expect_digits(eta.global.str, expected["eta_str"], "str");
   expect_digits(eta.total - eta.global.alg, expected["eta_tot"], "eta_tot");
@@ -83,7 +83,7 @@ TEST_P(AlgebraicT2D, AgreesWithAnIndependentProgram)
 
 INSTANTIATE_TEST_SUITE_P(Cases, AlgebraicT2D, ::testing::Range(0, 14));
 
-/// A distorted block with contact on two sides, rollers and loads, and its mesh bisected here and there.
+/// A distorted block with contact on two sides, rollers and loads, on a partly bisected mesh.
 template <int dim>
 DiscreteProblem<dim> some_problem(int p)
 {
@@ -109,7 +109,7 @@ DiscreteProblem<dim> some_problem(int p)
           {.degree = p}};
 }
 
-/// functional_i = (rho, phi_i) in a space on the mesh refined once, rho on the given one.
+/// functional_i = (rho, phi_i) in a space on the mesh refined once; rho is on the given mesh.
 template <int dim>
 std::vector<double> tested(const mesh::Mesh<dim>& mesh, const certify::AffineFields<dim>& rho,
                            const fem::LagrangeSpace<dim>& fine)
@@ -137,8 +137,8 @@ std::vector<double> tested(const mesh::Mesh<dim>& mesh, const certify::AffineFie
   return functional;
 }
 
-/// Any u and t are an iterate with what is missing in rho, whatever its size: smooth, or different from node
-/// to node as after a few steps of a linear solver.
+/// Any u and t are an iterate with the defect rho, whatever its size: smooth, or varying from node to node as
+/// after a few steps of a linear solver.
 template <int dim>
 void expect_bound(int p)
 {
@@ -189,8 +189,8 @@ TEST_P(Algebraic, BoundsWhatIsLeft3D)
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Algebraic, ::testing::Range(1, 4));
 
-/// A block in 3D by multigrid: fewer iterations, nearly the same bound, never below the dual norm; alg within
-/// its share of every bound.
+/// A block in 3D by multigrid: fewer iterations, nearly the same bound, never below the dual norm. alg stays
+/// within its share of every bound.
 TEST(AlgebraicStop, SavesIterations)
 {
   const ProblemData<3> data = pressed_block<3>();
@@ -209,7 +209,7 @@ TEST(AlgebraicStop, SavesIterations)
       for (const adapt::CertifiedStep& step : level.steps)
       {
         iterations[gamma_alg > 0 ? 1 : 0] += step.step.linear_iterations;
-        if (!step.bound) continue;  // of a start
+        if (!step.bound) continue;  // step of a start
         EXPECT_LE(step.bound->global.alg, 0.051 * step.bound->total_sharp);
       }
       bounds[gamma_alg > 0 ? 1 : 0] = level.estimate.total_sharp;

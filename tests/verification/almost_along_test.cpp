@@ -1,6 +1,6 @@
 /// @file almost_along_test.cpp
 /// Facets of Gamma_D almost along a component that is fixed on them: the bound, the identities and the stress
-/// do not depend on by how little they are turned. Prints a table of effectivities.
+/// do not depend on how small the angle is. Prints a table of effectivities.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ namespace
 constexpr std::array turns{0.0, 1e-10, 5e-9, 2e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-2, 0.1, 0.3};
 constexpr double along = 1e-8;
 
-/// The block with its top turned by an angle of `turn`, in 3D about both axes; the right side likewise.
+/// The block with its top turned by the angle `turn`, in 3D about both axes; the right side likewise.
 template <int dim>
 mesh::MeshData<dim> turned_block(const std::array<int, 2>& cells_2d, const std::array<int, 3>& cells_3d,
                                  double turn)
@@ -47,7 +47,8 @@ mesh::MeshData<dim> turned_block(const std::array<int, 2>& cells_2d, const std::
                      });
 }
 
-/// Planes of antisymmetry above, which take shear but no pressure, and on the right, where they meet contact.
+/// Planes of antisymmetry, which take shear but no pressure, on top and on the right, where they meet
+/// contact.
 template <int dim>
 ProblemData<dim> between_antisymmetries(const problem::ContactLaw& law)
 {
@@ -61,8 +62,8 @@ adapt::Method almost_along_method(int p)
   return {.degree = p, .newton = {.tolerance = 1e-12}};
 }
 
-/// Bound over dual norm at convergence, identities there and at the first iterates: to rounding, or, where
-/// the top counts as along the component, to a part of the angle.
+/// Bound over dual norm at convergence. Identities there and at the first iterates hold up to rounding, or up
+/// to a fraction of the angle if the top counts as along the component.
 template <int dim>
 double effectivity_of(int p, double turn)
 {
@@ -126,7 +127,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b)
   return std::sqrt(square / norm);
 }
 
-/// Rounding of a stress is that of the reactions, whose arms are as short as the angle is small.
+/// The rounding of a stress is that of the reactions, whose lever arms are as small as the angle.
 template <int dim>
 void expect_dense_kernel_agrees(int p, double turn)
 {
@@ -152,8 +153,8 @@ TEST(AlmostAlongDense, KernelAgrees)
   }
 }
 
-/// A constant stress leaves nothing to estimate, whatever the angle, but rounding of reactions with short
-/// arms.
+/// A constant stress leaves nothing to estimate, whatever the angle, except rounding of reactions with short
+/// lever arms.
 template <int dim>
 void expect_exact_for_constant_stress(int p, double turn)
 {

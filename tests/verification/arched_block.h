@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file arched_block.h
-/// A block on a round side, what it may touch there, and another body below it.
+/// A block with a round lower side, obstacles that it may touch there, and another body below it.
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ namespace tribound::test
 
 inline constexpr double radius = 1;
 
-/// A block of width 1 on top of the arc of the circle around (0, 1) (3D: of the cylinder along z).
+/// A block of width 1 above an arc of the circle around (0, 1) (3D: of the cylinder along z).
 template <int dim>
 mesh::MeshData<dim> arched_block(int n)
 {
@@ -79,7 +79,7 @@ mesh::MeshData<dim> arched_block(int n)
   return contact;
 }
 
-/// Pressed down and to the side on top.
+/// Pressed down and sideways on top.
 template <int dim>
 ProblemData<dim> pressed_on(const problem::Contact& contact)
 {
@@ -89,7 +89,7 @@ ProblemData<dim> pressed_on(const problem::Contact& contact)
   return data;
 }
 
-/// A round body on a block whose upper side is the same arc, a little flatter.
+/// A round body on a block whose upper side is the same arc, slightly flatter.
 template <int dim>
 std::pair<mesh::MeshData<dim>, ProblemData<dim>> pair_on_arc(int n, problem::ContactLaw law)
 {
@@ -135,7 +135,7 @@ std::pair<mesh::MeshData<dim>, ProblemData<dim>> pair_on_arc(int n, problem::Con
   return all;
 }
 
-/// The largest pressure on the lower side of a block of this mesh, pressed down by 0.02, degree 2.
+/// The largest pressure on the lower side of a block with this mesh, pressed down by 0.02, degree 2.
 [[nodiscard]] inline double largest_pressure(const problem::Contact& contact, const mesh::Mesh<2>& mesh)
 {
   ProblemData<2> data = pressed_on<2>(contact);

@@ -1,6 +1,6 @@
 /// @file balance_test.cpp
-/// Loads, reactions and contact forces: their sum vanishes to rounding at every Newton iterate, and the parts
-/// are those of a hand calculation.
+/// Loads, reactions and contact forces: their sum vanishes up to rounding at every Newton iterate, and the
+/// parts agree with hand calculations.
 
 #include "tribound/certify/bound/balance.h"
 
@@ -27,7 +27,7 @@ double largest(const std::vector<double>& values)
   return result;
 }
 
-/// What the sum leaves of the largest force and moment.
+/// The remainder of the sum, relative to the largest force and moment.
 struct Defect
 {
   double force = 0;
@@ -69,8 +69,8 @@ const std::array contacts = {problem::Contact(Frictionless(), wavy),
                              problem::Contact(Tresca(formula("0.01 + 0.005*sin(x)"))),
                              problem::Contact(Coulomb(0.4), wavy)};
 
-/// Body force, traction, pressure, a clamp that is inclined against the contact boundary by a roller, contact
-/// on one side; nothing vanishes and no datum is a polynomial.
+/// Body force, traction, pressure, a clamp inclined to the contact boundary by a roller, contact on one side;
+/// nothing vanishes and no datum is a polynomial.
 template <int dim>
 ProblemData<dim> data(const problem::Contact& contact)
 {
@@ -135,8 +135,8 @@ TEST_P(Balance3D, EveryIterateOfEveryLaw)
 }
 INSTANTIATE_TEST_SUITE_P(Degrees, Balance3D, ::testing::Range(1, 5));
 
-/// A cantilever of length 3 and height 2, clamped at the left, under its weight, a triangular pressure
-/// on top (3 x / 3 per length), a shear on the right. By statics the clamp carries the resultants.
+/// A cantilever of length 3 and height 2, clamped at the left, under its weight, a triangular pressure on top
+/// (3 x / 3 per length) and a shear on the right. By statics the clamp carries the resultants.
 TEST(Balance, StaticallyDeterminateCantilever)
 {
   const DiscreteProblem<2> c(
@@ -163,8 +163,8 @@ TEST(Balance, StaticallyDeterminateCantilever)
   EXPECT_EQ(b.rows.size(), 5u);
 }
 
-/// A block on a frictionless floor with rollers: the floor carries the weight, the rollers what pushes.
-/// How the moments are shared is not a matter of statics.
+/// A block on a frictionless floor with rollers: the floor carries the weight, the rollers carry the push.
+/// Statics does not determine how the moments are shared.
 TEST(Balance, ContactAndRollersIn3D)
 {
   const DiscreteProblem<3> c(
@@ -187,11 +187,11 @@ TEST(Balance, ContactAndRollersIn3D)
   expect(certify::BalanceKind::reaction, "left", {0.1, 0, 0});
   expect(certify::BalanceKind::reaction, "back", {0, 0, 0.4});
   expect(certify::BalanceKind::contact, "bottom", {0, 0.6, 0});
-  // A component that is not fixed has no reaction at all.
+  // A component that is not fixed has no reaction.
   EXPECT_EQ(find(b, certify::BalanceKind::reaction, "left").force[1], 0);
 }
 
-/// In 3D the moment is r x f: one force along each axis on a face of its own.
+/// In 3D the moment is r x f: one force along each axis, each on its own face.
 TEST(Balance, MomentsIn3D)
 {
   const DiscreteProblem<3> c(

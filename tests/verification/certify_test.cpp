@@ -1,6 +1,6 @@
 /// @file certify_test.cpp
-/// The equilibrated stress and the components of the bound: against the numbers of an independent program
-/// (tests/verification/data/t2d.json) and exact solutions. The identities: identities_test.cpp.
+/// The equilibrated stress and the components of the bound, against the numbers of an independent program
+/// (tests/verification/data/t2d.json) and exact solutions. For the identities see identities_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -67,8 +67,8 @@ TEST(Equilibrate, DoesNotDependOnTheNumberOfThreads)
   EXPECT_EQ(one.lin, three.lin);
 }
 
-/// Iterates of a block with friction, one after the other through the same Equilibrator: nothing of one gets
-/// into the next, and sigma_lin alone is that of the whole.
+/// Successive iterates of a block with friction through one Equilibrator: nothing leaks from one into the
+/// next, and sigma_lin computed alone equals that of the full computation.
 template <int dim>
 void expect_the_same_in_parts(DiscreteProblem<dim> c)
 {

@@ -1,5 +1,5 @@
 /// @file crack_tip_test.cpp
-/// How far the crack that carries the pressure of the water has come.
+/// How far the crack that carries the water pressure has advanced.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace tribound::test
 namespace
 {
 
-/// Of points that are open and broken where `cracked` says: 1 in the middle of the block (0, 2) x ...
+/// The tip if points are open and broken where `cracked` says; 1 is the middle of the block (0, 2) x ...
 template <int dim, class Cracked>
 contact::CrackTip tip_where(const Cracked& cracked)
 {
@@ -56,7 +56,7 @@ TEST(CrackTip, IsConnectedWithTheHeel)
   expect_connected_with_the_heel<3>();
 }
 
-/// The cracks of the paths on which the bound and several ranks are tested do carry pressure.
+/// On the paths that test the bound and several ranks, cracks do carry pressure.
 template <int dim>
 void expect_crack(bool pairs)
 {

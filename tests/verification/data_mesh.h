@@ -13,7 +13,7 @@
 namespace tribound::test
 {
 
-/// Of <name>2.geo or <name>3.geo.
+/// The mesh of <name>2.geo or <name>3.geo.
 template <int dim>
 mesh::Mesh<dim> data_mesh(const std::string& name)
 {

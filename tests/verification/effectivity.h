@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file effectivity.h
-/// Bound and dual norm of Newton iterates, for the tests of the effectivity.
+/// Bound and dual norm of Newton iterates, for effectivity tests.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ struct NamedMesh
   mesh::MeshData<dim> data;
 };
 
-/// What makes one case: its line in the table.
+/// The data of one case, and its line in the table.
 template <int dim>
 struct EffectivityCase
 {
@@ -43,7 +43,7 @@ struct EffectivityCase
   double newton_tolerance = 1e-11;
 };
 
-/// Effectivities of the iterates 1, 2 and last.
+/// Effectivities of iterates 1, 2 and the last.
 struct Effectivities
 {
   std::vector<double> of_iterates;

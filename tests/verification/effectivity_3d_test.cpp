@@ -1,6 +1,6 @@
 /// @file effectivity_3d_test.cpp
 /// The bound is above the dual norm of the residual in 3D, at every iterate. The cells of the 3x2x2 box are a
-/// third longer than wide, which for p = 1 raises the effectivity from 1.5 to 1.9: see effectivity_test.cpp.
+/// third longer than wide, which raises the effectivity for p = 1 from 1.5 to 1.9: see effectivity_test.cpp.
 
 #include <fmt/format.h>
 

@@ -1,19 +1,19 @@
 /// @file effectivity_test.cpp
 /// The bound is above the dual norm of the residual, and not far above: on every mesh, at every iterate.
 ///
-/// What the table says. At convergence, with cells of about the same size in all directions, the effectivity
-/// is 1.25 to 1.6, whatever the degree, the friction law and the singularities (clamped corners, re-entrant
-/// corner). Before convergence it reaches 2.8: sigma_lin enters the bound by the triangle inequality, three
-/// times (lin1, lin2n, lin2t), and the residual once. Two things raise it at convergence.
+/// Results. At convergence, with cells of about the same size in all directions, the effectivity is 1.25 to
+/// 1.6, whatever the degree, the friction law and the singularities (clamped corners, re-entrant corner).
+/// Before convergence it reaches 2.8: by the triangle inequality sigma_lin enters the bound three times
+/// (lin1, lin2n, lin2t), but the residual once. Two things raise it at convergence.
 ///
-/// A bent contact boundary (the distorted mesh, 1.35 to 1.5): the normal jumps from facet to facet, and P^n
-/// with it. For p = 3 without friction cnt is half as large as the bound there, on the box a fifth.
+/// A bent contact boundary (the distorted mesh, 1.35 to 1.5): the normal jumps between facets, and P^n with
+/// it. For p = 3 without friction cnt is half of the bound there, on the box a fifth.
 ///
-/// Stretched cells, most of all for p = 1: without friction 2.8, 4.5 and 6.6 where the cells are 2, 3 and 4
-/// times as long as high, against 1.2 for squares; cells that are higher than long do no harm. It is the
+/// Stretched cells, above all for p = 1: without friction 2.8, 4.5 and 6.6 for cells that are 2, 3 and 4
+/// times as long as high, against 1.2 for squares; cells that are higher than long do no harm. This is the
 /// price of working on patches: for scalar problems the estimate is efficient up to a factor 1 + C h_patch
-/// max |grad psi_a|, which grows like the aspect ratio. The bound remains a bound, and that alone is tested
-/// on such cells.
+/// max |grad psi_a|, which grows like the aspect ratio. The bound remains a bound, and only that is tested on
+/// such cells.
 
 #include <fmt/format.h>
 
@@ -75,7 +75,7 @@ TEST_P(Effectivity2D, IsAtLeastOneOnStretchedCells)
     }
 }
 
-/// Loads, gap, threshold and displacement vary; none but the displacement is in the spaces of the method.
+/// Loads, gap, threshold and displacement vary; only the displacement is in the spaces of the method.
 TEST_P(Effectivity2D, IsAtLeastOneWithDataThatAreNotPolynomials)
 {
   const auto varying = [](const std::string& name, const problem::ContactLaw& law) -> NamedProblem<2>

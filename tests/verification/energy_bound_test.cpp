@@ -1,6 +1,6 @@
 /// @file energy_bound_test.cpp
-/// The bound of the error in the energy norm: as sharp as that of an independent program, above the distance
-/// from much richer solutions, nothing where the stress is constant, at every iterate and in random cases.
+/// The bound of the energy-norm error: as sharp as that of an independent program, above the distance from
+/// much richer solutions, zero where the stress is constant, at every iterate and in random cases.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ namespace
 
 const problem::ContactLaw frictionless{problem::Frictionless()};
 
-/// T2D on nx x nx/2 squares: errors of the solutions and effectivities of an independent program that takes
-/// the nearest tractions of degree p in the law's cone and patches in L2.
+/// T2D on nx x nx/2 squares: errors of the solutions, and effectivities of an independent program. It takes
+/// the nearest tractions of degree p in the law's cone, and patches in L2.
 struct UniformCase
 {
   int p;
@@ -81,8 +81,8 @@ TEST_P(Energy, IsABound3D)
   expect_effectivity<3>("frictionless", pressed_block<3>(frictionless), block<3>({2, 1, 1}), p, richer, 2.5);
 }
 
-/// Patches in the norm of C^{-1}; in that of L2 1.63, 1.39 and 1.37 for nu = 0.49 and 2.48, 1.41 with the
-/// soft half, for p = 2 and 3.
+/// Patches in the norm of C^{-1}. In the L2 norm the values are 1.63, 1.39 and 1.37 for nu = 0.49, and 2.48,
+/// 1.41 with the soft half, for p = 2 and 3.
 TEST_P(Energy, StaysSharpNearIncompressibility)
 {
   const int p = GetParam();
@@ -147,7 +147,7 @@ TEST_P(Energy, HoldsAtEveryIterate)
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Energy, ::testing::Range(1, 4));
 
-/// A block with a random material, shape, mesh and loads on an obstacle with a gap, held at its left side.
+/// A block of random material, shape, mesh and loads on an obstacle with a gap, held at its left side.
 struct RandomBlock
 {
   std::mt19937 random;

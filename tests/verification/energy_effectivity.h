@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file energy_effectivity.h
-/// The bound of the error in the energy norm against distances from much richer solutions.
+/// The bound of the energy-norm error, against distances from much richer solutions.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ template <int dim>
   return certify::EnergyEstimator<dim>(c.form, c.method.solver)(u);
 }
 
-/// Cells of all shapes in (0,2) x (0,1) (x (0,1)), whose sides stay flat.
+/// Cells of all shapes in (0,2) x (0,1) (x (0,1)); the sides of the box stay flat.
 template <int dim>
 [[nodiscard]] mesh::MeshData<dim> irregular(mesh::MeshData<dim> data, double phase = 0)
 {
@@ -66,7 +66,7 @@ class RicherReference
     u_ = found.u;
   }
 
-  /// ||u - w||_en, w this solution.
+  /// ||u - w||_en, where w is this solution.
   [[nodiscard]] double distance(std::span<const double> u) const
   {
     std::vector<double> error = fem::nested_interpolant<dim>(coarse_.space, u, refined_, space_);
@@ -109,7 +109,7 @@ certify::EnergyBound expect_effectivity(const char* name, const ProblemData<dim>
   return eta;
 }
 
-/// No bound of `n` random problems make(seed) fails.
+/// No bound fails in `n` random problems make(seed).
 template <int dim, class Make>
 void expect_no_failure(const char* name, unsigned n, const Make& make)
 {

@@ -1,5 +1,5 @@
 /// @file energy_held_by_contact_test.cpp
-/// The bound of the error in the energy norm for bodies that contact holds, not displacement conditions.
+/// The bound of the energy-norm error for bodies held by contact rather than displacement conditions.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace
 
 const problem::ContactLaw coulomb{Coulomb(0.5)};
 
-/// A block on a floor, pressed unevenly from above and pushed along x; without friction symmetric rollers on
+/// A block on a floor, pressed unevenly from above and pushed along x. Without friction, symmetry rollers on
 /// the left and, in 3D, at the back stop it from sliding.
 template <int dim>
 ProblemData<dim> resting_block(const problem::ContactLaw& law, problem::Field gap = 0.0)
@@ -80,7 +80,7 @@ TEST_P(HeldByContact, HoldsAtEveryIterate)
   }
 }
 
-/// Pressed evenly, with a Poisson ratio of 0 or room to the sides.
+/// Pressed evenly, with a Poisson ratio of 0 or free to expand sideways.
 template <int dim>
 void expect_nothing_where_the_stress_is_constant(int p)
 {
@@ -107,7 +107,7 @@ TEST_P(HeldByContact, IsNothingWhereTheStressIsConstant)
 
 INSTANTIATE_TEST_SUITE_P(Degrees, HeldByContact, ::testing::Range(1, 4));
 
-/// The reason for u = 0.
+/// The reason that the bound gives for u = 0.
 std::string reason(const ProblemData<2>& data, double height = 1)
 {
   mesh::MeshData<2> mesh = mapped<2>(block<2>({4, 4}),
@@ -140,7 +140,7 @@ TEST(HeldByContactReasons, NoTractionHoldsTheBody)
   EXPECT_EQ(reason(hardly), "");
 }
 
-/// The block turned, on an uneven obstacle, with random loads that press it on.
+/// The block turned, on an uneven obstacle, with random loads that press it down.
 ProblemData<2> random_rest(std::mt19937& random, const Tensor<2>& frame)
 {
   const auto between = [&](double low, double high)
@@ -169,7 +169,7 @@ TEST(HeldByContactRandom, NoBoundFails)
                        });
 }
 
-/// The springs that stop free motions are nothing that multigrid feels.
+/// The springs that stop free motions do not disturb multigrid.
 TEST(HeldByContactSolver, MultigridGivesTheSameBound)
 {
   const DiscreteProblem<3> c(block<3>({6, 3, 3}), resting_block<3>(Tresca(0.06)), {.degree = 2});

@@ -1,6 +1,6 @@
 /// @file energy_pairs_test.cpp
-/// The bound of the error in the energy norm of bodies on meshes that match: above the distance from much
-/// richer solutions, nothing where the stress is constant, and of tied blocks that of the block they are.
+/// The bound of the energy-norm error of bodies on matching meshes: above the distance from much richer
+/// solutions, zero where the stress is constant; for tied blocks it is that of the single block.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Point<2> skewed(const Point<2>& x)
   return {x[0] + 0.13 * std::sin(1.5 * x[0]) * (2 - x[0]) * (1 + 0.3 * x[1]), x[1]};
 }
 
-/// Both held at their left sides; the upper one is pressed down and pulled to the right.
+/// Both blocks are held at their left sides; the upper one is pressed down and pulled to the right.
 template <int dim>
 ProblemData<dim> two_pressed(problem::ContactLaw law)
 {
@@ -99,7 +99,7 @@ TEST_P(EnergyPairs, ContactMayBeAllThatHoldsABody)
     }
 }
 
-/// What friction cannot hold, alone or below.
+/// Loads that friction cannot hold, between the blocks or on the floor.
 TEST(EnergyPairs, NoTractionHoldsTheBody)
 {
   const auto reason = [](const problem::ContactLaw& law, bool on_floor, double pull)
@@ -114,7 +114,7 @@ TEST(EnergyPairs, NoTractionHoldsTheBody)
   EXPECT_EQ(reason(Tresca(0.06), true, 0.05), nothing);  // slides on the floor
 }
 
-/// Uniform pressure through frictionless sides.
+/// Uniform pressure between frictionless sides.
 TEST(EnergyPairs, IsNothingWhereTheStressIsConstant)
 {
   ProblemData<2> data = two_pressed<2>(problem::Frictionless());
@@ -129,7 +129,7 @@ TEST(EnergyPairs, IsNothingWhereTheStressIsConstant)
   }
 }
 
-/// What is known where bodies touch is not where there is a gap between them, given or that of the meshes.
+/// What is known of touching bodies does not hold with a gap between them, given or from the meshes.
 TEST(EnergyPairs, TheIntervalOfTheEnergyHoldsWithAGap)
 {
   for (const char* const gap : {"0", "0.02*x", ""})
@@ -158,7 +158,7 @@ TEST(EnergyPairs, TheIntervalOfTheEnergyHoldsWithAGap)
   }
 }
 
-/// Meshes that do not match are cut until they do.
+/// Non-matching meshes are cut until they match.
 TEST_P(EnergyPairs, InTwoDimensionsMeshesNeedNotMatch)
 {
   const int p = GetParam();

@@ -1,6 +1,6 @@
 /// @file error_bars_test.cpp
-/// The bound of the error in the energy norm along the adaptive algorithm: optimal rates and effectivities on
-/// meshes that it marks, on the meshes that are asked for, of the iterate that is kept, and as a demand.
+/// The bound of the energy-norm error along the adaptive algorithm: optimal rates and effectivities on meshes
+/// that it marks, on the requested meshes, for the kept iterate, and as a demand.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ namespace
 using adapt::EnergyLevels;
 using adapt::ErrorMeasure;
 
-/// What was told of a level.
+/// What an observer was told of a level.
 struct ToldLevel
 {
   int number;
@@ -63,7 +63,7 @@ Told run(const adapt::Method& method, const adapt::AdaptOptions& options,
   return told;
 }
 
-/// Over the levels of all meshes whose cells its bound marks, against a solution that is much richer.
+/// Rates over all meshes whose cells this bound marks, against a much richer solution.
 void expect_optimal(const Told& told, const ToldLevel& reference, int p)
 {
   std::vector<adapt::RatePoint> bounds;
@@ -115,7 +115,7 @@ TEST_P(EnergyAdaptive, RatesAreOptimalOnMeshesThatItMarks)
   expect_optimal(run({.degree = p}, marked_by_energy(p == 1 ? 8000 : 3000)), reference.levels.back(), p);
 }
 
-/// Facets that match stay such, so that there is a bound on every mesh.
+/// Matching facets stay matching, so there is a bound on every mesh.
 TEST_P(EnergyAdaptive, RatesAreOptimalBetweenBodies)
 {
   const ProblemData<2> data{
@@ -143,8 +143,8 @@ TEST(ErrorBars, AreThoseOfTheMeshesThatAreAskedFor)
   }
 }
 
-/// The last level is known as such only when the next mesh turns out to be too large: it is told of again,
-/// with the bar of its final iterate.
+/// A level is known to be the last only when the next mesh turns out too large: it is reported again, with
+/// the bar of its final iterate.
 TEST(ErrorBars, AreThoseOfTheIterateThatIsKept)
 {
   for (const EnergyLevels levels : {EnergyLevels::last, EnergyLevels::every})
@@ -178,7 +178,7 @@ TEST(ErrorBars, ADemandIsPartOfTheVerdict)
       << missed.verdict.reason;
 }
 
-/// Where there can be no bound the demand is not met, and the run ends by its limits.
+/// Where no bound is possible, the demand is not met, and the run ends by its limits.
 TEST(ErrorBars, ADemandWithoutABoundIsNotMet)
 {
   ProblemData<2> data = pressed_block<2>();
@@ -189,7 +189,7 @@ TEST(ErrorBars, ADemandWithoutABoundIsNotMet)
   EXPECT_NE(told.verdict.reason.find("has no bound"), std::string::npos) << told.verdict.reason;
 }
 
-/// Who wants the run to end does not wait for them.
+/// An interrupted run does not wait for error bars.
 TEST(ErrorBars, AnInterruptedRunHasNone)
 {
   const Told told = run({.degree = 2}, {.tolerance = 1e-9, .bars = {.levels = EnergyLevels::last}},
@@ -202,7 +202,7 @@ const std::vector<problem::Quantity<2>> two_quantities{
     {.name = "e", .kind = problem::QuantityKind::energy},
     {.name = "f", .kind = problem::QuantityKind::contact_force, .boundary = "bottom"}};
 
-/// What gives up in the middle leaves the values of the quantities, with its reason.
+/// A bound that gives up midway leaves the values of the quantities, with its reason.
 TEST(ErrorBars, QuantitiesOutliveABoundThatGivesUp)
 {
   mesh::Mesh<2> mesh(box<2>({0, 0}, {1, 1e-7}, {1, 1}));
@@ -218,7 +218,7 @@ TEST(ErrorBars, QuantitiesOutliveABoundThatGivesUp)
   EXPECT_NEAR(bound.quantities[0].value, contact::stress_norms(problem, flat.space, u).energy, 1e-20);
 }
 
-/// A mesh that a limit turns down has taken the stress of the level that stays.
+/// A mesh rejected by a limit has already taken the stress of the level that stays.
 TEST(ErrorBars, ALevelWhoseSuccessorFailedHasThem)
 {
   mesh::Mesh<2> mesh(block<2>({4, 2}));
@@ -243,7 +243,7 @@ TEST(ErrorBars, ALevelWhoseSuccessorFailedHasThem)
   EXPECT_DOUBLE_EQ(levels.view().level.estimate.total_sharp, bound);
 }
 
-/// Facets of one body end a hair beside those of the other: the cells between are not the user's.
+/// Facets of one body end just beside those of the other: the flat cells between are not the user's.
 TEST(ErrorBars, CellsCutFlatAreNotBlamedOnTheMesh)
 {
   const ProblemData<2> data{.boundaries = {clamped<2>("bottom_below"), loaded<2>("top", 0.01, -0.1),

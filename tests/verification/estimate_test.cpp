@@ -1,6 +1,6 @@
 /// @file estimate_test.cpp
 /// The components of the bound where the answer is known: eta_tot falls like the error, h^p, the oscillation
-/// like h^(p+1); nothing is left of any component where the stress is constant. Prints the values.
+/// like h^(p+1); all components vanish where the stress is constant. Prints the values.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace tribound::test
 namespace
 {
 
-/// Rates between the last two of the meshes with n = first, 2 first, ... cells along y.
+/// Rates between the last two meshes, with n = first, 2 first, ... cells along y.
 struct BoundRates
 {
   double total;
@@ -89,7 +89,7 @@ TEST(BoundRates3D, TurningSlip)
   expect_rates(turning_slip(), 2, 2, 2);
 }
 
-/// Cells of all shapes in the box (0,2) x (0,1) (x (0,1)) turned by `frame`; its sides stay flat.
+/// Cells of all shapes in the box (0,2) x (0,1) (x (0,1)) rotated by `frame`; its sides stay flat.
 template <int dim>
 mesh::MeshData<dim> irregular_box(const Tensor<dim>& frame)
 {
@@ -103,7 +103,7 @@ mesh::MeshData<dim> irregular_box(const Tensor<dim>& frame)
   return renumbered(mapped(structured<dim>(), map), 11);
 }
 
-/// Every component, not only the bound, is at round-off.
+/// Every component, not only the bound, is round-off.
 void expect_nothing(const certify::BoundComponents& eta)
 {
   constexpr double tolerance = 1e-11;

@@ -1,6 +1,6 @@
 /// @file finish_test.cpp
-/// The last level of a run: Newton's method converged there, systems solved anew where an identity asks for
-/// it, and the stress that is zero.
+/// The last level of a run: convergence of Newton's method, systems solved again if an identity requires it,
+/// and zero stress.
 
 #include <gtest/gtest.h>
 
@@ -55,8 +55,8 @@ Told run(const adapt::Method& method, const adapt::AdaptOptions& options,
       method, options);
 }
 
-/// The criterion stops every level but the last one early; there the forces of contact settle, and the bound
-/// hardly moves.
+/// The criterion stops every level early except the last; there the contact forces settle, and the bound
+/// hardly changes.
 TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
 {
   const adapt::AdaptOptions options{.tolerance = 0.05, .max_levels = 40};
@@ -77,7 +77,7 @@ TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
   EXPECT_LE(late.levels.back().identities.largest(1), 1e-10);
 }
 
-/// The limit is found when the next mesh is there: the level is told of again.
+/// The limit is noticed once the next mesh exists: the level is reported again.
 TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
 {
   const Told told = run({.degree = 2}, {.tolerance = 1e-6, .max_dofs = 1200});
@@ -88,7 +88,7 @@ TEST(Finish, ALevelThatTurnsOutToBeTheLastIsToldOfAgain)
   EXPECT_TRUE(told.levels.back().converged);
 }
 
-/// Where it is known that no mesh follows, the criterion need not be asked: what it would have said is told.
+/// If no mesh follows, the criterion need not be evaluated; what it would have decided is reported.
 TEST(Finish, OnTheLastMeshOfAllOneIterateIsBounded)
 {
   for (const int p : {1, 2})
@@ -102,8 +102,8 @@ TEST(Finish, OnTheLastMeshOfAllOneIterateIsBounded)
     EXPECT_EQ(std::ranges::count_if(last.steps, [](const auto& step) { return step.bound.has_value(); }), 1);
     EXPECT_TRUE(last.steps.back().bound && last.steps.back().accepted);
     EXPECT_GT(last.finishing_steps, 0);
-    // The criterion may take a step more, as it looks at a bound only where a guess of it lets the iterate
-    // pass.
+    // The criterion may take one more step, as it computes a bound only if an estimate of it lets the
+    // iterate pass.
     EXPECT_NEAR(static_cast<int>(last.steps.size()) - last.finishing_steps,
                 static_cast<int>(early.levels.back().steps.size()), 1);
     const double bound = early.levels.back().estimate.total_sharp;
@@ -112,7 +112,7 @@ TEST(Finish, OnTheLastMeshOfAllOneIterateIsBounded)
   }
 }
 
-/// The steps that are allowed are enough for the criterion, not for a residual of 1e-14.
+/// The allowed steps are enough for the criterion, but not for a residual of 1e-14.
 TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
 {
   const adapt::AdaptOptions options{.tolerance = 0.9, .max_levels = 0};
@@ -121,14 +121,14 @@ TEST(Finish, WhatDoesNotConvergeStaysAsItIs)
   const int steps = static_cast<int>(early.levels.back().steps.size());
   const Told late = run({.degree = 1, .newton = {.tolerance = 1e-14, .max_steps = steps}}, options);
   EXPECT_EQ(late.verdict.status, certify::RunStatus::certified) << late.verdict.reason;
-  // Up to rounding: a system is not summed up in the same order in other places of memory.
+  // Up to rounding: the order of summation in a system depends on its place in memory.
   double difference = 0;
   for (std::size_t i = 0; i < late.levels.back().u.size(); ++i)
     difference = std::max(difference, std::abs(late.levels.back().u[i] - early.levels.back().u[i]));
   EXPECT_EQ(difference <= 1e-15, !late.levels.back().converged);
 }
 
-/// Systems solved loosely leave the stress out of equilibrium.
+/// Loosely solved systems leave the stress out of equilibrium.
 Told with_tolerance(double tolerance)
 {
   return run({.degree = 1,
@@ -154,7 +154,7 @@ TEST(Finish, SystemsAreSolvedAnewWhereTheyLeaveALargePartOfTheBound)
   EXPECT_LE(told.levels.back().estimate.global.alg, 1e-9 * told.levels.back().estimate.total_sharp);
 }
 
-/// A body that is carried away as a whole has no stress: rounding is compared with rounding.
+/// A body in rigid motion has no stress: rounding is compared with rounding.
 TEST(Finish, ARigidMotionIsCertified)
 {
   for (int p = 1; p <= 4; ++p)
@@ -173,7 +173,7 @@ TEST(Finish, ARigidMotionIsCertified)
       }
 }
 
-/// Nothing loads the body: what formulas of gap and threshold leave out between points does nothing to it.
+/// Nothing loads the body: errors of gap and threshold formulas between points have no effect on it.
 TEST(Finish, ABodyAtRestIsCertifiedOnItsFirstMesh)
 {
   const problem::Field gap = formula("0.1*x^2*exp(-x)");
@@ -191,7 +191,7 @@ TEST(Finish, ABodyAtRestIsCertifiedOnItsFirstMesh)
       EXPECT_EQ(told.levels.size(), 1u);
       EXPECT_EQ(told.levels.back().estimate.total_sharp, 0);
     }
-  // A gap that is negative between all points of the rule is none.
+  // A gap that is negative between all points of the rule is not such a case.
   const Told pressed = run(
       block<2>({4, 2}),
       {.boundaries = {clamped<2>("left"),
@@ -200,7 +200,7 @@ TEST(Finish, ABodyAtRestIsCertifiedOnItsFirstMesh)
   EXPECT_GT(pressed.levels.back().estimate.total_sharp, 0);
 }
 
-/// Newton's method that fails says when contact may be the cause: alone it holds the block.
+/// When Newton's method fails, it says that contact may be the cause if only contact holds the block.
 TEST(Finish, AFailureNamesWhatContactAloneHolds)
 {
   const auto failure = [](const problem::BoundaryCondition<2>& left)
@@ -218,7 +218,7 @@ TEST(Finish, AFailureNamesWhatContactAloneHolds)
   EXPECT_EQ(failure(clamped<2>("left")).reason.find("slid"), std::string::npos);
 }
 
-/// Carried into the tip of a wedge: contact on a ten-thousandth of a side, where the point of no rule lies.
+/// Moved onto the tip of a wedge: contact on a ten-thousandth of a side, where no rule has a point.
 TEST(Finish, ANarrowContactIsNoRigidMotion)
 {
   const Told told =
@@ -231,7 +231,7 @@ TEST(Finish, ANarrowContactIsNoRigidMotion)
   EXPECT_GE(told.levels.back().estimate.total_sharp, 1.32859e-9);  // the dual norm, computed elsewhere
 }
 
-/// Rounding that hides a stress that loads or displacements need makes no certificate.
+/// There is no certificate if rounding hides a stress that loads or displacements require.
 TEST(Finish, AStressDrownedInRoundingIsNotZero)
 {
   const problem::Material rubber = lame(1, 0.499999999999);

@@ -1,6 +1,6 @@
 /// @file hertz_test.cpp
 /// The Hertz examples against half-space theory, and SSNV128 against its published displacements. The
-/// examples themselves are run, adaptively; what is printed is in their README.
+/// examples themselves are run, adaptively; the printed numbers are in their README.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ Hertz sphere_theory(double F)
   return {a, 3 * F / (2 * pi * a * a)};
 }
 
-/// The pressure at one point of the contact boundary, and its share of the boundary's measure.
+/// The pressure at one point of the contact boundary, and the point's share of the boundary's measure.
 struct Sample
 {
   double r;
@@ -70,8 +70,7 @@ struct Sample
   double weight;
 };
 
-/// At the contact points, r the distance from the axis x = 0 (2D) or x = z = 0
-/// (3D).
+/// Samples at the contact points; r is the distance from the axis x = 0 (2D) or x = z = 0 (3D).
 template <int dim>
 std::vector<Sample> pressure_samples(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
@@ -103,7 +102,7 @@ double largest_facet(const contact::NitscheForm<dim>& form, double r_max)
   return largest;
 }
 
-/// Runs the example as the program does; `look` is shown every level, the last one last.
+/// Runs the example as the program does; `look` is called with every level, the last one last.
 template <int dim>
 void run_example(const case_file::Config& config,
                  const std::function<void(const adapt::LevelView<dim>&)>& look)
@@ -146,8 +145,8 @@ ContactZone contact_zone(const case_file::Config& config, double a)
   return zone;
 }
 
-/// The a and p0 of the profile p^2 = p0^2 (1 - (r/a)^2) that fits the samples with r < r_max best (least
-/// squares).
+/// The a and p0 of the profile p^2 = p0^2 (1 - (r/a)^2), fitted by least squares to the samples with
+/// r < r_max.
 Hertz fitted(std::span<const Sample> samples, double r_max)
 {
   double w = 0, x = 0, xx = 0, y = 0, xy = 0;
@@ -167,7 +166,7 @@ Hertz fitted(std::span<const Sample> samples, double r_max)
   return {std::sqrt(-p2_at_0 / slope), std::sqrt(p2_at_0)};
 }
 
-/// The measure of the part of the contact boundary that is closed.
+/// The measure of the closed part of the contact boundary.
 double closed_measure(std::span<const Sample> samples)
 {
   double sum = 0;
@@ -176,7 +175,7 @@ double closed_measure(std::span<const Sample> samples)
   return sum;
 }
 
-/// Root of the mean of (p - p_theory)^2 over r < r_max, over p0.
+/// The root mean square of p - p_theory over r < r_max, divided by p0.
 double mean_deviation(std::span<const Sample> samples, const Hertz& theory, double r_max)
 {
   double sum = 0;
@@ -247,7 +246,7 @@ TEST(Hertz, Sphere)
   const Hertz whole = sphere_theory(100 * pi * R * R);
   const ContactZone zone = contact_zone<3>(example("03_hertz_sphere"), whole.a);
   EXPECT_NEAR(zone.force, 100 * pi * R * R / 4,
-              2e-2 * zone.force);  // straight facets leave out a part of the loaded disc
+              2e-2 * zone.force);  // straight facets leave out part of the loaded disc
   compare(zone, sphere_theory(4 * zone.force), std::sqrt(4 * closed_measure(zone.samples) / pi), 0.03);
 }
 

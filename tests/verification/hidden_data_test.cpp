@@ -1,7 +1,7 @@
 /// @file hidden_data_test.cpp
 /// The bound is above the dual norm of the residual for data that a rule of fixed order does not see: strips,
 /// steps, spikes and oscillations narrower than the distance of its points. The dual norm is computed with
-/// loads that share nothing with those of the program: functions of C++, integrated by brute force.
+/// loads that share no code with the program: C++ functions, integrated by brute force.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace
 
 using Function = std::function<double(double)>;
 
-/// A function of one coordinate, as formula and as function, with the places where it jumps or kinks.
+/// A function of one coordinate, as a formula and as a C++ function, with the places of its jumps and kinks.
 struct Profile
 {
   std::string text;
@@ -38,7 +38,7 @@ class Random
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
   double between(double a, double b) { return a + (b - a) * std::ldexp(static_cast<double>(engine_()), -32); }
-  /// Of any size between a and b.
+  /// A size between a and b, log-uniform.
   double size(double a, double b) { return std::exp(between(std::log(a), std::log(b))); }
   int of(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
 
@@ -46,7 +46,7 @@ class Random
   std::mt19937 engine_;
 };
 
-/// In `variable`, which runs from 0 to `length`, of values between 0 and `top`.
+/// A profile in `variable`, which runs from 0 to `length`, with values between 0 and `top`.
 Profile random_profile(Random& random, char variable, double length, double top, double narrowest)
 {
   const double v = random.between(0.1, 1) * top;
@@ -84,7 +84,7 @@ Profile random_profile(Random& random, char variable, double length, double top,
   }
 }
 
-/// Loads by brute force in the space of the dual norm: f_y on the body, g_y on the top, both of x.
+/// Loads by brute force in the space of the dual norm: f_y on the body, g_y on the top, both functions of x.
 class BruteForce
 {
  public:
@@ -157,7 +157,7 @@ class BruteForce
   const fem::LagrangeSpace<2>& space_;
 };
 
-/// A block, held at the left, loaded in its body and from above, on a floor; one of the data is hard to see.
+/// A block on a floor, held at the left, with a body force and a load from above; one datum is hard to see.
 struct RandomCase
 {
   ProblemData<2> data;
@@ -191,7 +191,7 @@ RandomCase random_case(Random& random)
   return c;
 }
 
-/// Bound and dual norm of what Newton's method has after a few steps.
+/// Bound over dual norm after a few steps of Newton's method.
 double random_effectivity(Random& random, const std::string& seed)
 {
   const RandomCase c = random_case(random);
@@ -229,10 +229,10 @@ TEST(HiddenData, TheBoundIsAboveTheDualNormIn500RandomCases)
   std::ranges::sort(found);
   std::cout << fmt::format("effectivities: smallest {:.4f}, median {:.4f}, largest {:.4f}\n", found.front(),
                            found[n_cases / 2], found.back());
-  EXPECT_LE(found[n_cases / 2], 4);  // most of it are early iterates on coarse, stretched cells
+  EXPECT_LE(found[n_cases / 2], 4);  // mostly early iterates on coarse, stretched cells
 }
 
-/// In 3D: jumps along planes in all of the data, on cells that are far larger than what they enclose.
+/// In 3D: jumps along planes in all data, on cells far larger than the regions between the planes.
 TEST(HiddenData, TheBoundIsAboveTheDualNormIn3D)
 {
   for (unsigned seed = 0; seed < 12; ++seed)
@@ -262,7 +262,7 @@ TEST(HiddenData, TheBoundIsAboveTheDualNormIn3D)
   }
 }
 
-/// Strips between the points of the rule were not seen at all: stress 0, bound 0.
+/// Strips between the points of the rule used to be missed entirely: stress 0, bound 0.
 TEST(HiddenData, ANarrowStripIsSeen)
 {
   const DiscreteProblem<2> c(

@@ -1,5 +1,5 @@
 /// @file history_check_test.cpp
-/// Load paths followed once more, with half the steps on a finer mesh, against the same followed by hand.
+/// Load paths repeated with half the steps on a finer mesh, against the same path followed by hand.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct Followed
   }
 };
 
-/// A path, and what follow_finely() makes of it.
+/// A path, and the result of follow_finely() on it.
 template <int dim>
 struct Case
 {
@@ -139,7 +139,7 @@ TEST(HistoryCheck, IsThePathByHandWithoutItsBounds)
   expect_the_path_by_hand<3>(bonded_laws()[3], false, 1);
 }
 
-/// No softening, and loads that only grow: what steps leave adds up to little.
+/// No softening, and loads that only grow: the errors of the steps add up to little.
 TEST(HistoryCheck, DiffersLittleWhereNothingSoftens)
 {
   Case<2> of = peeled_case<2>(problem::JointLaw({.coefficient = 0.3}, 0.01), false, 2);
@@ -165,7 +165,7 @@ TEST(HistoryCheck, DiffersLittleWhereNothingSoftens)
   }
 }
 
-/// Water acts on the body in the place of contact: the effective resultant has both.
+/// Water acts on the body in place of contact: the effective resultant contains both.
 TEST(HistoryCheck, KnowsEffectiveForces)
 {
   mesh::MeshData<2> mesh = peeled_mesh<2>(false);
@@ -200,7 +200,7 @@ TEST(HistoryCheck, PeakOfABarIsThatOfTwoPathsByHand)
   EXPECT_NEAR(figures[0].difference().value(), by_hand.end.peak.value().t - path.end.peak.value().t, 1e-12);
   EXPECT_STREQ(figures[4].name, "dissipated");
   EXPECT_NEAR(figures[4].difference().value(), by_hand.last->dissipated - path.last->dissipated, 1e-12);
-  // Both end with all of the bond but a hundredth: the energy of breaking it, over a length of 2.
+  // Both end with 99 % of the bond broken: the energy of breaking it, over a length of 2.
   EXPECT_NEAR(*figures[4].check, 0.99 * 2 * snap_back::Gc, 1e-9);
   EXPECT_NEAR(figures[4].difference().value(), 0, 1e-9);
 }

@@ -1,6 +1,6 @@
 /// @file identities_test.cpp
 /// The identities of method section 4 (divergence, normal continuity, tractions, weak symmetry) at the first,
-/// second and last Newton iterate: on every kind of mesh, with every pair of conditions on sides that meet.
+/// second and last Newton iterates: on every kind of mesh, with every pair of conditions on adjacent sides.
 /// Prints the largest defect of each test.
 
 #include <fmt/format.h>
@@ -61,7 +61,7 @@ double expect_identities(DiscreteProblem<dim>& c)
 template <int dim>
 using Conditions = std::vector<problem::BoundaryCondition<dim>>;
 
-/// Under a body force of degree 3.
+/// Adds a body force of degree 3.
 template <int dim>
 ProblemData<dim> heavy(const Conditions<dim>& boundaries)
 {
@@ -81,7 +81,7 @@ mesh::MeshData<dim> some_block()
   return block<dim>({4, 3}, {2, 1, 1});
 }
 
-/// All combinations on the sides of the block turned by `frame`.
+/// All combinations on the sides of the block rotated by `frame`.
 template <int dim>
 void every_combination(const Tensor<dim>& frame, int p)
 {
@@ -152,7 +152,7 @@ void check_case(const std::string& name, DiscreteProblem<dim> c)
              c.mesh.n_cells(), largest);
 }
 
-/// Blocks that contact and friction help to hold, undamped.
+/// Blocks partly held by contact and friction, undamped.
 template <int dim>
 void held_by_contact(const Conditions<dim>& boundaries, int p)
 {
@@ -220,8 +220,8 @@ void unstructured_meshes(int p)
   }
 }
 
-/// Two materials; the stress is singular at the corner. Contact on the inner wall too, where the re-entrant
-/// corner joins it to a traction.
+/// Two materials; the stress is singular at the corner. Contact also acts on the inner wall, which meets a
+/// traction boundary at the re-entrant corner.
 template <int dim>
 void l_shape(int p)
 {
@@ -255,8 +255,8 @@ TEST_P(Identities3D, LShapeOfTwoMaterials)
   l_shape<3>(GetParam());
 }
 
-/// Data that no rule integrates exactly: every integral of f must take the same rule (rule 1 of section 4),
-/// also where the vertices of a cell do not ascend.
+/// Data that no rule integrates exactly: every integral of f must use the same rule (rule 1 of section 4),
+/// even if the vertices of a cell are not in ascending order.
 template <int dim>
 void no_polynomial(int p)
 {

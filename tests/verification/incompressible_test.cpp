@@ -16,7 +16,7 @@ namespace tribound::test
 namespace
 {
 
-/// Numbers that are the same with every standard library.
+/// Random numbers that are the same with every standard library.
 class Draw
 {
  public:
@@ -31,7 +31,7 @@ class Draw
   std::mt19937 random_;
 };
 
-/// Flat at the bottom, leaning sides, a sloping top.
+/// A flat bottom, inclined sides and a sloping top.
 mesh::MeshData<2> quadrilateral(Draw& draw)
 {
   const int n = 2 + draw.among(6);
@@ -46,7 +46,7 @@ mesh::MeshData<2> quadrilateral(Draw& draw)
                 });
 }
 
-/// A degree and the data of a block that is held on the left, pressed from above and pulled on the right.
+/// The degree and data of a block held on the left, pressed from above and pulled on the right.
 struct RandomProblem
 {
   int degree;
@@ -73,7 +73,7 @@ RandomProblem random_problem(Draw& draw, double nu)
            .material = lame(1, nu)}};
 }
 
-/// In 99 of 100 cases at least, which takes a penalty that does not grow with lambda: docs/choosing.md.
+/// In at least 99 of 100 cases; this requires a penalty that does not grow with lambda: docs/choosing.md.
 TEST(Incompressible, NewtonConverges)
 {
   constexpr int n_cases = 40;

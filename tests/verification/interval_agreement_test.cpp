@@ -1,6 +1,6 @@
 /// @file interval_agreement_test.cpp
-/// Intervals of every iterate and of a richer solution agree, as `tribound verify` wants it, and wrong ones
-/// do not.
+/// Intervals of every iterate and of a richer solution agree, as `tribound verify` requires; wrong ones do
+/// not.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,7 @@ namespace tribound::test
 namespace
 {
 
-/// What is asked of both solutions agrees at every iterate; an interval that is moved beyond the other does
-/// not.
+/// The intervals of both solutions agree at every iterate; an interval shifted beyond the other does not.
 template <int dim>
 void expect_agreement(unsigned seed, int p)
 {

@@ -1,6 +1,6 @@
 /// @file load_path_effectivity_test.cpp
 /// The bound against the dual norm of the residual at every step of load paths, at the first Newton iterates
-/// and at the last, with interfaces that break, slip and remember.
+/// and the last, with history-dependent interfaces that break and slip.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Seen
   int count = 0;
 };
 
-/// The step once more from the displacement before it, with the bound of each of its first iterates.
+/// Repeats the step from the displacement before it, with the bound of each of its first iterates.
 template <int dim>
 void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const double> before, Seen& seen)
 {
@@ -104,7 +104,7 @@ TEST(LoadPathBound, IsAboveTheDualNormIn3D)
   }
 }
 
-/// On meshes to which the history has been carried in the middle of the path.
+/// On meshes to which the history was transferred in the middle of the path.
 TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
 {
   Seen seen;
@@ -133,7 +133,7 @@ TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
   fmt::print("2D, carried: {} iterates {:.3f} to {:.3f}\n", seen.count, seen.least, seen.most);
 }
 
-/// Kinks of the pressure are inside facets: the drain, and the tip of the crack.
+/// Kinks of the pressure lie inside facets: the drain and the tip of the crack.
 TEST(LoadPathBound, IsAboveTheDualNormWithWaterInTheJoint)
 {
   const std::vector<problem::ContactLaw> laws = bonded_laws();

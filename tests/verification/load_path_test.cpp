@@ -1,5 +1,5 @@
 /// @file load_path_test.cpp
-/// Load paths with interfaces that remember against closed formulas and the numbers of an independent
+/// Load paths with history-dependent interfaces, against closed formulas and the numbers of an independent
 /// program, tests/verification/data/cohesive.json.
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ json reference()
   return json::parse(in);
 }
 
-/// At t = 1, 2, ... the values of a list.
+/// A field with the values of a list at t = 1, 2, ...
 Field table(const std::vector<double>& values)
 {
   std::string text = "0";
@@ -92,7 +92,7 @@ void expect_uniform(const adapt::LoadStep<2>& step, double normal, double tangen
   EXPECT_LE(step.level.estimate.total, 1e-9);
 }
 
-/// A bar in series with a bond that opens, is closed, pressed, opened again and broken.
+/// A bar in series with a bond, which is opened, closed, pressed, opened again and broken.
 TEST(LoadPath, BarAgainstTheSeriesOfSprings)
 {
   const json cases = reference()["bar"];
@@ -126,7 +126,7 @@ TEST(LoadPath, BarAgainstTheSeriesOfSprings)
     }
 }
 
-/// A block pulled and sheared, in proportion or not, pressed with friction.
+/// A block pulled and sheared, proportionally or not, and pressed with friction.
 TEST(LoadPath, BlockAgainstRootFinding)
 {
   const json cases = reference()["block"];
@@ -205,7 +205,7 @@ void expect_numbers(const adapt::LoadStep<2>& step, const json& expected)
   near(step.level.estimate.total, "eta_tot", 1e-6, 0);
 }
 
-/// The peel of a bond, with every law and with water in the joint, and cyclic friction: energies, forces,
+/// Peeling of a bond, with every law and with water in the joint, and cyclic friction: energies, forces,
 /// damage, components.
 TEST(LoadPath, NumbersOfAnIndependentProgram)
 {
@@ -240,7 +240,7 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
                     SCOPED_TRACE(step.number);
                     EXPECT_EQ(step.cuts, 0);
                     EXPECT_LE(step.level.steps.size(),
-                              40);  // full ones, and if these go round in circles halved ones
+                              40);  // full steps, and halved ones if these cycle
                     EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
                     expect_numbers(step, c["steps"][i++]);
                   });
@@ -248,7 +248,7 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
     }
 }
 
-/// Laws, data and meshes that do not go together are refused by name.
+/// Incompatible laws, data and meshes are refused by name.
 TEST(LoadPath, RefusesWhatDoesNotHold)
 {
   const auto message = [](const problem::ContactLaw& law, double gamma0, Field gap)
@@ -276,7 +276,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::JointLaw({.tension = {10, 1, Unloading::origin}}),
          "the interface \"bottom\" at (0.25, 0) softens with the slope 50, and gamma =");
   expect(problem::JointLaw({.tension = soft}), "has a gap of 0.01 under a bond", 10, 0.01);
-  EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, 1e-10), "");  // what meshes round
+  EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, 1e-10), "");  // rounding of meshes
   EXPECT_EQ(message(problem::JointLaw({.tension = soft}), 10, -0.01), "");  // pressed together
   expect(problem::JointLaw({.tension = {1, 0, Unloading::origin}}), "needs a fracture energy");
   expect(problem::JointLaw({.cohesion = 1, .stick = true}), "needs a tensile strength");
@@ -288,7 +288,7 @@ TEST(LoadPath, RefusesWhatDoesNotHold)
   expect(problem::EndoLaw({5, 4, 0.8, 0.3, 3, 0.003}), "must hold of the strengths");
 }
 
-/// A block on its floor, pushed beyond what friction can hold: it is not Newton's method that is to blame.
+/// A block on its floor, pushed beyond what friction can hold: Newton's method is not to blame.
 TEST(LoadPath, AStepBeyondFrictionSaysSo)
 {
   Path path({4, 2}, 1);

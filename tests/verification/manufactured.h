@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file manufactured.h
-/// Smooth exact solutions, given as formulas, and the error against them. Shares no integration with the
-/// library's own norms but the quadrature rules.
+/// Smooth exact solutions, given as formulas, and the error against them. Integration shares only the
+/// quadrature rules with the library's own norms.
 
 #include <array>
 #include <cmath>
@@ -63,7 +63,7 @@ class ExactField
   std::vector<problem::Field> gradient_;
 };
 
-/// The problem with degree p on a uniform mesh, n cells along y.
+/// The problem with degree p on a uniform mesh with n cells along y.
 template <int dim>
 DiscreteProblem<dim> manufactured_problem(const Manufactured<dim>& solution, int p, int n)
 {
@@ -83,7 +83,7 @@ DiscreteProblem<dim> manufactured_problem(const Manufactured<dim>& solution, int
   return {box<dim>(Point<dim>::Zero(), upper, cells), data, {.degree = p, .newton = {.tolerance = 1e-11}}};
 }
 
-/// ||u - u_h||_en = (sigma(e), eps(e))^(1/2) and the same of u.
+/// ||u - u_h||_en = (sigma(e), eps(e))^(1/2), and the same norm of u.
 struct EnergyError
 {
   double error;

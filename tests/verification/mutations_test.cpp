@@ -1,7 +1,6 @@
 /// @file mutations_test.cpp
-/// The equilibrated stress against a dense kernel written independently from method section 4, and that
-/// kernel with one mistake at a time: each must be noticed by the identities or by the
-/// reference components of T2D.
+/// The equilibrated stress against a dense kernel, written independently from method section 4. The kernel is
+/// then run with one mistake at a time; the identities or the reference components of T2D must notice each.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,8 +25,8 @@ namespace tribound::test
 namespace
 {
 
-/// The block with no side along an axis, cells of all shapes, numbered at random. (Facets that are almost,
-/// but not quite, along a fixed component are in almost_along_test.cpp.)
+/// The block with no side along an axis, with cells of all shapes, numbered at random. (For facets almost
+/// along a fixed component see almost_along_test.cpp.)
 template <int dim>
 mesh::MeshData<dim> skewed(mesh::MeshData<dim> data)
 {
@@ -40,7 +39,7 @@ mesh::MeshData<dim> skewed(mesh::MeshData<dim> data)
   return renumbered(mapped(std::move(data), map), 5);
 }
 
-/// T2D with a body force, a roller on the left and a tangential one on the right; in 3D rollers behind too.
+/// T2D with a body force, a roller on the left and a tangential one on the right; in 3D also rollers behind.
 template <int dim>
 ProblemData<dim> rolling_block(const problem::Contact& contact)
 {
@@ -79,7 +78,7 @@ std::vector<double> lin_of(const certify::Stress<dim>& stress, Index cell)
   return result;
 }
 
-/// ||a - b|| / ||sigma_dis|| for dis and lin, the larger.
+/// The larger of ||a - b|| / ||sigma_dis|| for dis and lin.
 template <int dim>
 double difference(const certify::Stress<dim>& a, const certify::Stress<dim>& b)
 {
@@ -170,7 +169,7 @@ double distance_from_reference(int p, int k, Mutation mutation)
   return largest;
 }
 
-/// The dense kernel is right by itself: the numbers of the reference program.
+/// The dense kernel itself is right: it gives the numbers of the reference program.
 TEST(DenseKernelT2D, HasTheComponentsOfTheReference)
 {
   for (const int p : {1, 2})
@@ -186,8 +185,8 @@ struct Mistake
   bool components;
 };
 
-// y_a enters dis and lin with opposite signs: dropped from both it cancels in sigma_h, whose identities hold,
-// and the bound with them. The parts are then wrong and the components say so. T2D has no body force.
+// y_a enters dis and lin with opposite signs. Dropped from both, it cancels in sigma_h, so the identities
+// hold and so does the bound. The parts are then wrong, and the components show it. T2D has no body force.
 constexpr std::array mistakes{
     Mistake{Mutation::sign_of_f, "sign of f", &certify::IdentityDefects::divergence, false},
     Mistake{Mutation::sign_of_t, "sign of t", &certify::IdentityDefects::neumann, true},

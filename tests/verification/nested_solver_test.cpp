@@ -1,5 +1,5 @@
 /// @file nested_solver_test.cpp
-/// Adaptive runs solved by multigrid on their meshes, against factorisations.
+/// Adaptive runs solved by multigrid on their sequence of meshes, against factorisations.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ std::vector<Level> run(algebra::LinearMethod method, const problem::ContactLaw& 
       {},
       [&](const adapt::LevelView<dim>& view)
       {
-        const certify::Estimate& eta = view.level.estimate;  // what solvers leave differs
+        const certify::Estimate& eta = view.level.estimate;  // the remainders of solvers differ
         levels.push_back(
             {view.discrete.mesh.n_cells(), view.level.steps.size(), eta.total_sharp - eta.global.alg});
       }};

@@ -1,6 +1,6 @@
 /// @file newton_test.cpp
-/// The damped Newton method on the block of problem T2D: converges in at most 20 steps for every friction
-/// law, mesh and degree. Prints the steps.
+/// The damped Newton method on the block of problem T2D converges in at most 20 steps for every friction law,
+/// mesh and degree. Prints the steps.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace
 
 constexpr std::size_t most_steps = 20;
 
-/// Steps and damped steps on the three meshes with p = 1 and 2.
+/// Steps and damped steps on the three meshes for p = 1 and 2.
 void check_steps(const std::string& name, const problem::ContactLaw& law)
 {
   fmt::print("{:<22}", name);

@@ -1,5 +1,5 @@
 /// @file normal_field_terms_test.cpp
-/// cnt and frc where the direction of contact varies, against integrals by hand.
+/// cnt and frc for a varying direction of contact, against integrals by hand.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ namespace tribound::test
 namespace
 {
 
-/// cnt^2 + frc^2 of a facet, by a rule with many points, from the form's own account of single points: code
-/// that shares neither rule nor enclosures with the certificate.
+/// cnt^2 + frc^2 of a facet by a rule with many points, from the form's own states at single points. This
+/// code shares neither rule nor enclosures with the certificate.
 template <int dim>
 double squares_by_hand(const DiscreteProblem<dim>& c, std::size_t k, std::span<const double> u,
                        std::span<const Point<dim>> traction, int n_parts)
@@ -58,8 +58,7 @@ double squares_by_hand(const DiscreteProblem<dim>& c, std::size_t k, std::span<c
   return segment.h * segment.measure * sum;
 }
 
-/// Whether what the certificate says of the contact terms of all facets is what there is, not less, and
-/// hardly more.
+/// Checks that the certified contact terms of all facets are not below the actual ones, and hardly above.
 void expect_terms(const DiscreteProblem<2>& c, std::span<const double> u, double more, int n_parts)
 {
   const std::vector<Point<2>> traction = c.form.traction(u);
@@ -91,8 +90,8 @@ TEST(NormalField, TheContactTermsAreWhatTheyAreByHand)
       }
 }
 
-/// A direction that turns aside between the points of the rule, by so little of the facet that no point sees
-/// it.
+/// A direction that deviates between the points of the rule, on so small a part of the facet that no point
+/// sees it.
 TEST(NormalField, WhatHappensBetweenThePointsIsSeen)
 {
   const std::string angle = "(0.4*exp(-((x-0.1234)/0.0004)^2))";
@@ -106,8 +105,8 @@ TEST(NormalField, WhatHappensBetweenThePointsIsSeen)
   expect_terms(c, u, 1.2, 4000);
 }
 
-/// The certificate must take N where the form took it: half a facet aside is seen by hand. (Where the contact
-/// sticks, T hardly depends on N.)
+/// The certificate must take N where the form took it: a shift by half a facet is seen by hand. (Where
+/// contact sticks, T hardly depends on N.)
 TEST(NormalField, ADirectionAtAnotherPointIsSeen)
 {
   const auto [name, surface] = obstacles(2)[1];

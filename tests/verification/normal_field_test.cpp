@@ -1,6 +1,6 @@
 /// @file normal_field_test.cpp
-/// Contact along a direction N(x) that varies: the form, the identities and the bound, against rigid
-/// obstacles and between bodies.
+/// Contact along a varying direction N(x): the form, the identities and the bound, against rigid obstacles
+/// and between bodies.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ namespace tribound::test
 namespace
 {
 
-/// What does not vary is what it was: the normals of the facets given as a constant change no digit.
+/// A constant direction changes nothing: the facets' normals given as a constant change no digit.
 TEST(NormalField, TheNormalOfTheFacetsGivenIsTheNormalOfTheFacets)
 {
   for (const problem::ContactLaw& law : laws())
@@ -52,7 +52,7 @@ TEST(NormalField, TheNormalOfTheFacetsGivenIsTheNormalOfTheFacets)
     const problem::Field down(-1.0);
     data.boundaries.back().contact->normal = problem::NormalField({0.0, down});
     EXPECT_EQ(numbers(), before);
-    // The same as a formula goes another way, with the same result up to rounding.
+    // As a formula it takes another path in the code, with the same result up to rounding.
     data.boundaries.back().contact->normal =
         problem::NormalField({formula("x - x + 0"), formula("-1 + 0*(x - x)")});
     const std::vector<double> varying = numbers();
@@ -66,7 +66,7 @@ struct Seen
   double most = 0;
 };
 
-/// At the iterates 1 and 2 and at the last: identities, and the bound above the dual norm. The tangent at a
+/// At iterates 1, 2 and the last: identities, and the bound above the dual norm. Also the tangent, at a
 /// random point near the solution.
 template <int dim>
 void expect_certified(const DiscreteProblem<dim>& c, const std::string& name, Seen& seen)
@@ -97,7 +97,7 @@ void expect_certified(const DiscreteProblem<dim>& c, const std::string& name, Se
   expect_contact_tangent(c.form, sum(newton.u, 1, random_free_vector(c.form.constraints(), 1e-3, 1)), 1e-7);
 }
 
-/// Each obstacle with each degree, under laws that change places.
+/// Each obstacle with each degree, under laws in rotation.
 TEST(NormalField, ObstaclesAreCertifiedIn2D)
 {
   Seen seen;
@@ -137,7 +137,7 @@ TEST(NormalField, PairsAreCertified)
   fmt::print("pairs: {:.3f} to {:.3f}\n", seen.least, seen.most);
 }
 
-/// The distance of the meshes, taken along the direction of contact.
+/// The gap is the distance of the meshes along the direction of contact.
 TEST(NormalField, PairsMayKeepTheGapOfTheMeshes)
 {
   auto [data, problem] = pair_on_arc<2>(4, Coulomb(0.3));
@@ -155,7 +155,7 @@ TEST(NormalField, PairsMayKeepTheGapOfTheMeshes)
   }
 }
 
-/// The largest pressure on the arc against the floor, its twelve facets refined uniformly.
+/// The largest pressure of the arc on the floor, with its twelve facets refined uniformly.
 double pressure_on_arc(const problem::Contact& contact, int refinements)
 {
   const mesh::Mesh<2> mesh(mapped<2>(box<2>(Point<2>(-0.5, 0), Point<2>(0.5, 1), {12, 12}),
@@ -168,8 +168,8 @@ double pressure_on_arc(const problem::Contact& contact, int refinements)
   return largest_pressure(contact, mesh::refine_uniformly(mesh, refinements).mesh);
 }
 
-/// Peaks of the polygon grow with refinement; with the obstacle's direction and the gap of the true shape
-/// there are none, and the pressure is that of the flat side with the curvature in the gap.
+/// The pressure peaks of the polygon grow with refinement. With the obstacle's direction and the gap of the
+/// true shape there are none, and the pressure is that of a flat side with the curvature in the gap.
 TEST(NormalField, ThePressureHasNoPeaksOfThePolygon)
 {
   const problem::Contact polygon(Frictionless(), formula("y"));

@@ -1,5 +1,5 @@
 /// @file numbering_test.cpp
-/// The order of the vertices, of the cells and of the vertices in the cells changes nothing but rounding.
+/// The order of vertices, of cells and of vertices in cells changes only rounding.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ struct NamedData
   ProblemData<dim> data;
 };
 
-/// Data that rules integrate as they are, and such that cells and facets are cut and halved.
+/// Data that rules integrate directly, and data for which cells and facets are cut and halved.
 template <int dim>
 std::vector<NamedData<dim>> all_data()
 {
@@ -89,7 +89,7 @@ Solved<dim> solved(const mesh::MeshData<dim>& mesh, const ProblemData<dim>& data
   return result;
 }
 
-/// Components relative to the bound: those that vanish are rounding.
+/// Components relative to the bound: vanishing ones are rounding.
 template <int dim>
 void expect_same(const Solved<dim>& a, const Solved<dim>& b)
 {

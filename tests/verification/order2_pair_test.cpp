@@ -28,8 +28,8 @@ constexpr double flatter = 1.25;
 constexpr int bottom = 2;  ///< of the ball
 constexpr int top = 3;     ///< of the seat by itself
 
-/// A box with the side y = 0 on the ball of radius r that touches y = 0 in the origin from above, with nodes
-/// of order 2 there.
+/// A box whose side y = 0 is moved to the ball of radius r that touches y = 0 at the origin from above, with
+/// second-order nodes there.
 template <int dim>
 mesh::MeshData<dim> on_ball(double half_width, std::array<double, 2> heights, int tag, double r,
                             const std::array<int, dim>& cells)
@@ -75,7 +75,7 @@ auto surface_of(const mesh::Mesh<dim>& mesh, const std::string& name)
                                                              Where{});
 }
 
-/// Contact of `slave` with `master`, along the normals of the master.
+/// Contact of `slave` with `master` along the normals of the master.
 template <int dim>
 problem::Contact contact_between(const mesh::Mesh<dim>& mesh, const std::string& slave,
                                  const std::string& master, const problem::ContactLaw& law)
@@ -104,7 +104,7 @@ ProblemData<dim> pressed(const mesh::Mesh<dim>& mesh, const problem::ContactLaw&
   return data;
 }
 
-/// Against the two balls that the nodes are on, at points of the facets.
+/// At points of the facets, against the two balls that carry the nodes.
 template <int dim>
 void expect_third_order(const std::vector<int>& sizes)
 {
@@ -142,7 +142,7 @@ TEST(Order2Pair, TheGapConvergesToThatOfTheBalls)
   expect_third_order<3>({4, 8, 16});
 }
 
-/// Whichever side has the contact terms.
+/// The pressure does not depend on which side has the contact terms.
 TEST(Order2Pair, EitherSideMayBeTheSlave)
 {
   const mesh::Mesh<2> coarse = ball_on_seat<2>(10);
@@ -184,7 +184,7 @@ TEST(Order2Pair, IsCertifiedIn3D)
   EXPECT_LE(ratio, 8);
 }
 
-/// Nobody knows gap and direction between the points at which they were evaluated.
+/// Gap and direction are unknown between the points of evaluation.
 TEST(Order2Pair, TheCertificateSaysThatNothingIsEnclosed)
 {
   const mesh::Mesh<2> mesh = ball_on_seat<2>(2);

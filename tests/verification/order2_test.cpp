@@ -1,5 +1,5 @@
 /// @file order2_test.cpp
-/// Second-order facets as the shape of a body: against the circle they come from, pressure and bound.
+/// Second-order facets as the shape of a body: comparison with the circle they come from, pressure, bound.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ namespace
 
 constexpr int bottom = 2;
 
-/// A block on top of the ball of radius 1 that touches y = 0 in the origin: its lower side with the vertices
-/// and the nodes of edges on the ball, those above the middles of edges.
+/// A block on top of the ball of radius 1 that touches y = 0 at the origin. Vertices and edge nodes of its
+/// lower side lie on the ball, edge nodes above the midpoints of edges.
 template <int dim>
 mesh::Mesh<dim> round_block(const std::array<int, dim>& cells)
 {
@@ -49,7 +49,7 @@ mesh::Mesh<dim> round_block(const std::array<int, dim>& cells)
                                               { return centre + (x - centre).normalized(); }));
 }
 
-/// Contact of the lower side with the obstacle, on the surface that the mesh gives.
+/// Contact of the lower side with the obstacle, on the surface given by the mesh.
 template <int dim>
 problem::Contact contact_on(const mesh::Mesh<dim>& mesh, const problem::Surface& obstacle,
                             const problem::ContactLaw& law)
@@ -97,7 +97,7 @@ TEST(Order2, ConvergesToTheCircle)
   }
 }
 
-/// On every level: the polygon leaves no trace in it.
+/// Holds on every level: the polygon leaves no trace.
 TEST(Order2, ThePressureIsThatOfTheCircle)
 {
   const problem::Surface floor = obstacles(2)[0].second;
@@ -134,7 +134,7 @@ TEST(Order2, IsCertifiedIn2D)
     }
 }
 
-/// Part of a ball on a floor and on another ball.
+/// Part of a ball, on a floor and on another ball.
 TEST(Order2, IsCertifiedIn3D)
 {
   const mesh::Mesh<3> mesh = round_block<3>({2, 1, 2});
@@ -167,7 +167,7 @@ TEST(Order2, TheNormalOfTheShapeIsCertified)
   EXPECT_GE(sound_effectivity(c), 1);
 }
 
-/// Without the shape the certificate says what straight facets leave out, and with it how far they are.
+/// Without the shape the certificate reports what straight facets leave out; with it, their distance from it.
 TEST(Order2, TheCertificateKnowsWhatIsStraightened)
 {
   const mesh::Mesh<2> mesh = round_block<2>({4, 4});

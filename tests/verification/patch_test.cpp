@@ -67,7 +67,7 @@ void expect_exact(const DiscreteProblem<dim>& d, const AffineCase<dim>& exact, c
     EXPECT_EQ(state.status, exact.status) << "at " << state.point.transpose();
 }
 
-/// In every state, on the meshes of the box turned by `frame` that `make_mesh` makes.
+/// Checks every state on the meshes that `make_mesh` makes of the box rotated by `frame`.
 template <int dim, class MakeMesh>
 void expect_exact_on(const MakeMesh& make_mesh, const Tensor<dim>& frame, int p)
 {

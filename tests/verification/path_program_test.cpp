@@ -1,5 +1,5 @@
 /// @file path_program_test.cpp
-/// Load paths beyond their peak: bars that snap back against the closed formula, peaks, stages, and what
+/// Load paths beyond their peak: snap-back of bars against the closed formula, peaks, stages, and paths that
 /// cannot be followed.
 
 #include <gmock/gmock.h>
@@ -77,7 +77,8 @@ TEST(PathProgram, BarThroughItsSnapBackByDamage)
 {
   for (const int degree : {1, 2})
   {
-    // The tip of the path lies between two steps of the list; damage takes over where Newton's method fails.
+    // The peak of the path lies between two steps of the list; damage control takes over where Newton's
+    // method fails.
     const Followed automatic = follow_exactly(
         Bar<2>(degree),
         {.targets = {0.0009, 0.0016, 0.0025}, .following = adapt::Following::automatic, .damage_step = 0.2});
@@ -94,7 +95,7 @@ TEST(PathProgram, BarThroughItsSnapBackByOpening)
 {
   const adapt::Gauge opening{.boundary = "bottom"};
   const adapt::Gauge top{.boundary = "top", .component = 1, .factor = 0.1};
-  // An opening alone is zero before the bond softens.
+  // The opening alone is zero before the bond softens.
   const adapt::PathProgram program{.targets = {0.0009, 0.0017},
                                    .following = adapt::Following::displacement,
                                    .displacement = {.gauges = {opening, top}, .step = 5e-5, .until = 6.5e-4}};
@@ -113,7 +114,7 @@ TEST(PathProgram, EveryLawWithABondIsFollowed)
                           "damage");
 }
 
-/// After the bond is broken the bar is lifted off, a rigid motion but for what holds it.
+/// After the bond is broken the bar lifts off: a rigid motion except for what holds it.
 TEST(PathProgram, GoesOnByADisplacement)
 {
   const Followed followed = follow_exactly(
@@ -154,8 +155,8 @@ TEST(PathProgram, PeakOfHalvedSteps)
   EXPECT_LE(std::abs(followed.end.peak->change.value()), 1e-3 * exact);
 }
 
-/// Displacement and pressure of water that are not affine in t: with d(t) the displacement of the top and
-/// delta = D delta_c, sigma = ft (1 - D) - p_w(t) and d(t) = sigma / M + delta.
+/// Displacement and water pressure that are not affine in t. With d(t) the displacement of the top and
+/// delta = D delta_c: sigma = ft (1 - D) - p_w(t) and d(t) = sigma / M + delta.
 TEST(PathProgram, DataNeedNotBeAffineInT)
 {
   ProblemData<2> data = Bar<2>::data(problem::JointLaw({.tension = {ft, Gc}}));
@@ -196,7 +197,7 @@ TEST(PathProgram, DataNeedNotBeAffineInT)
   EXPECT_LT(t.back(), 0.001);
 }
 
-/// The bond softens along its closed formula whether its damage is given or how far it opens.
+/// The bond softens along its closed formula whether its damage or its opening is controlled.
 TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
 {
   const Bar<2> bar(2);
@@ -206,7 +207,7 @@ TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
   const adapt::PathMeasure<2> damage;
   const adapt::Control<2> control{
       .name = "damage", .measure = damage, .increment = 0.2, .last_increment = 0.2, .largest_change = 0.01};
-  EXPECT_FALSE(adapt::follow_zone(path, control, {}, {}));  // nothing has been damaged so far
+  EXPECT_FALSE(adapt::follow_zone(path, control, {}, {}));  // nothing is damaged yet
   ASSERT_EQ(path.follow(control), "");
 
   const adapt::LoadStep<2> last = *path.last();
@@ -222,7 +223,7 @@ TEST(ProcessZone, LeadsOnInPlaceOfTheDamage)
   EXPECT_LT(path.last()->t, last.t);
   for (const problem::InterfaceResponse<2>& response : path.last()->responses)
   {
-    EXPECT_NEAR(response.state.damage, 0.2, 0.05);  // 0.1 of each step, of a length of 2
+    EXPECT_NEAR(response.state.damage, 0.2, 0.05);  // 0.1 in each step, over a length of 2
     EXPECT_NEAR(path.last()->t, ft * (1 - response.state.damage) / M + response.state.damage * critical,
                 1e-10);
   }

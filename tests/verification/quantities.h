@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantities.h
-/// What tests ask for, and what they expect of the intervals.
+/// Quantities for tests, and checks of their intervals.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 /// @file quantity_random_test.cpp
-/// Intervals of numbers of random problems hold those of much richer solutions, at every iterate.
+/// Intervals of quantities of random problems contain the values of much richer solutions, at every iterate.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -20,12 +20,12 @@ namespace tribound::test
 namespace
 {
 
-/// How much wider intervals are than they have to be, by name: half the width over the distance of u_h.
+/// How much wider than necessary intervals are, by name: half the width over the distance of u_h.
 struct Widths
 {
   std::map<std::string, std::vector<double>> ratios;
   std::map<std::string, double> largest_share;  ///< of half the width between centre and truth
-  int n_narrow_failures = 0;                    ///< of intervals a tenth as wide
+  int n_narrow_failures = 0;                    ///< with intervals a tenth as wide
   int n = 0;
 
   void add(const QuantityInterval& interval, double truth)
@@ -52,7 +52,7 @@ struct Widths
   }
 };
 
-/// Every interval of every iterate holds what a much richer solution has.
+/// Every interval of every iterate contains the value of a much richer solution.
 template <int dim>
 void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
 {
@@ -79,8 +79,7 @@ void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
     iterates.push_back(c.solve().u);
   for (const std::vector<double>& u : iterates)
   {
-    // As runs have it, with facets cut for bodies to match and where the state changes, and on the mesh
-    // itself.
+    // As in runs, with facets cut to make bodies match and where the state changes; and on the mesh itself.
     const EnergyBound bound =
         is_cut ? adapt::energy_bound<dim>(c.form, c.method, u, asked.quantities) : estimator(u);
     ASSERT_EQ(bound.reason, "");
@@ -88,7 +87,7 @@ void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
     {
       const double value = asked.values[i](rich, truth.u);
       expect_contains(bound.quantities[i], value, fmt::format(", seed {}", seed));
-      if (!is_cut)  // there tractions have other points
+      if (!is_cut)  // on cut facets tractions have other points
       {
         EXPECT_NEAR(bound.quantities[i].value, asked.values[i](c, u), 1e-12) << bound.quantities[i].name;
       }
@@ -106,8 +105,8 @@ TEST(QuantityRandom, NoIntervalFails)
   EXPECT_GE(widths.n_narrow_failures, 20);
 }
 
-/// The vertical resultant of T(u) on the bottom with min(1, d / ramp), d the distance from its left end, at
-/// the vertices of the first mesh and linear between them.
+/// The vertical resultant of T(u) on the bottom with the weight min(1, d / ramp), where d is the distance
+/// from its left end; evaluated at the vertices of the first mesh and linear between them.
 double weighted_force(const DiscreteProblem<2>& c, std::span<const double> u, const mesh::Mesh<2>& first,
                       double ramp)
 {
@@ -132,8 +131,8 @@ double weighted_force(const DiscreteProblem<2>& c, std::span<const double> u, co
   return sum;
 }
 
-/// Forces beside fixed displacements are one number on all meshes: the interval of a coarse one holds the
-/// value of a finer one, whose interval is of the same number.
+/// Forces next to fixed displacements are the same quantity on all meshes: the interval on a coarse mesh
+/// contains the value on a finer mesh, whose interval is for the same number.
 template <int dim>
 void expect_one_number(unsigned seed, int p, bool is_on_another)
 {
@@ -185,7 +184,7 @@ TEST(QuantityRandom, ForcesBesideFixedDisplacementsAreOneNumberOnAllMeshes)
     for (const bool is_on_another : {false, true}) expect_one_number<3>(seed, 1, is_on_another);
 }
 
-/// The solution w of Tresca's problem with the threshold -mu_F t_h^n, which the bottom has along x.
+/// The solution w of Tresca's problem with the threshold -mu_F t_h^n, as a function of x on the bottom.
 TEST(QuantityCoulomb, IntervalsHoldTheSolutionWithTheComputedThreshold)
 {
   const DiscreteProblem<2> c(block<2>({4, 2}), pressed_block<2>(problem::ContactLaw(Coulomb(0.4))),

@@ -1,5 +1,5 @@
 /// @file quantity_test.cpp
-/// Intervals of numbers of the solution: against an independent program, exact solutions and statics by hand.
+/// Intervals of quantities of the solution, against an independent program, exact solutions and statics.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace tribound::test
 namespace
 {
 
-/// T2D on nx x nx/2 squares: what an independent program found, whose tractions obey the law in another way;
+/// T2D on nx x nx/2 squares: results of an independent program, whose tractions obey the law in another way;
 /// radii of the resultants with the weight min(1, 2x), intervals of the energy.
 struct ReferenceCase
 {
@@ -56,7 +56,7 @@ TEST_P(QuantityT2D, IsAsSharpAsThatOfAnIndependentProgram)
   expect_contains(found[2], -0.041322732);
   const auto is_weighted = [](const QuantityInterval& interval)
   { return interval.note.find("weighted") != std::string::npos; };
-  EXPECT_EQ(std::ranges::count_if(found, is_weighted), 2);  // the forces, beside the clamped side
+  EXPECT_EQ(std::ranges::count_if(found, is_weighted), 2);  // the forces, next to the clamped side
   const auto half_width = [](const QuantityInterval& interval)
   { return (interval.upper - interval.lower) / 2; };
   if (normal > 0)
@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(Uniform, QuantityT2D,
                                            ReferenceCase{3, 4, 0.0055586, 0.0076341, 0, 0},
                                            ReferenceCase{3, 8, 0, 0, 0.016745982, 0.016827092}));
 
-/// T2D on meshes adapted to the energy, p = 2, with the same weight. The independent program had, with 171
-/// and 466 cells of such meshes, these radii of second order.
+/// T2D on meshes adapted to the energy, p = 2, with the same weight. The independent program had these
+/// second-order radii on such meshes with 171 and 466 cells.
 TEST(QuantityT2D, SharpensOnAdaptedMeshes)
 {
   const Quantities<2> quantities = {contact_force<2>("bottom", {0, -1}, 0.5),
@@ -121,7 +121,7 @@ TEST(QuantityT2D, SharpensOnAdaptedMeshes)
   }
 }
 
-/// Against constant stress every interval is the number itself.
+/// For constant stress every interval is the number itself.
 template <int dim>
 void expect_exact_numbers(int p)
 {
@@ -145,7 +145,7 @@ void expect_exact_numbers(int p)
           EXPECT_EQ(interval.reason, "") << exact.name;
           EXPECT_LE(interval.lower, truth + 1e-13 * size) << interval.name << exact.name;
           EXPECT_GE(interval.upper, truth - 1e-13 * size) << interval.name << exact.name;
-          // mid is a root: of rounding where s |v^t| + t^t . v^t vanishes by cancellation
+          // mid is a square root: of rounding if s |v^t| + t^t . v^t vanishes by cancellation
           EXPECT_LE(interval.upper - interval.lower, 1e-7 * size) << interval.name << exact.name;
         };
         near(found[0], 2 * (sigma.array() * exact.gradient.array()).sum());  // volume 2
@@ -204,7 +204,7 @@ TEST(QuantityWeight, ThereMustBeOneOnTheFirstMesh)
   EXPECT_EQ(intervals<2>(fine, {force}, fine.solve().u).front().reason, "");
 }
 
-/// A block of weight 0.3 per volume 2, pressed down by 0.1 on its upper side of length or area 2.
+/// A block of volume 2 and weight 0.3 per volume, pressed down by 0.1 on its upper side of length or area 2.
 template <int dim>
 ProblemData<dim> resting_block(problem::ContactLaw law, std::vector<problem::BoundaryCondition<dim>> others)
 {
@@ -244,7 +244,7 @@ void expect_statics()
   EXPECT_FALSE(interval_from_statics<dim>(wedged, contact_force<dim>("left", Point<dim>::Unit(1))).exact);
 }
 
-/// Three blocks, which meet where two of them stand side by side on the third.
+/// Three blocks: two stand side by side on the third.
 template <int dim>
 void expect_intervals_of_three(const problem::ContactLaw& law, int p)
 {
@@ -282,7 +282,7 @@ TEST(QuantityJunction, IntervalsHoldWhereThreeBodiesMeet)
   expect_intervals_of_three<3>(tresca, 1);
 }
 
-/// What rests on another body is pressed by that, however that is held.
+/// A body that rests on another is pressed by it, however that one is held.
 template <int dim>
 void expect_statics_of_two()
 {

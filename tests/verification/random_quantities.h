@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file random_quantities.h
-/// Random problems, and numbers of their solutions with the values that other code gives them.
+/// Random problems, and quantities of their solutions with values computed by other code.
 
 #include <fmt/format.h>
 
@@ -25,8 +25,8 @@
 namespace tribound::test
 {
 
-/// A block of random material, shape, mesh and loads, held at its left or its upper side, there sometimes
-/// moved, on an obstacle with a gap or on another block, held below, whose mesh matches or not.
+/// A block of random material, shape, mesh and loads. Its left or upper side is held, sometimes with a given
+/// motion. It stands on an obstacle with a gap, or on another block, which is held below and matches or not.
 template <int dim>
 struct RandomCase
 {
@@ -130,7 +130,7 @@ double mean_over(const DiscreteProblem<dim>& c, std::span<const double> u, const
   return sum / measure;
 }
 
-/// Quantities of a random block and their values for a discrete solution, by other code.
+/// Quantities of a random block, and their values for a discrete solution by other code.
 template <int dim>
 struct Asked
 {
@@ -178,7 +178,7 @@ struct Asked
   }
 };
 
-/// TRIBOUND_RANDOM_CASES times as many where that is set.
+/// n, multiplied by TRIBOUND_RANDOM_CASES if that is set.
 inline unsigned n_cases(unsigned n)
 {
   const char* const factor = std::getenv("TRIBOUND_RANDOM_CASES");

@@ -80,7 +80,7 @@ void check_contact(const DiscreteProblem<dim>& c, const Manufactured<dim>& solut
   }
 }
 
-/// Solves with n = first, 2 first, ... and prints; the last two errors give the rate.
+/// Solves with n = first, 2 first, ... and prints the errors; the last two give the rate.
 template <int dim>
 double finest_rate(const Manufactured<dim>& solution, int p, int first, int levels)
 {
@@ -134,8 +134,8 @@ TEST_P(Rates2D, Slip)
   EXPECT_NEAR(finest_rate(full_slip(2, 2), GetParam(), 4, 4), GetParam(), 0.15);
 }
 
-// On coarse meshes incompressibility is a constraint that takes up degrees of freedom: for p = 1 the rate
-// holds but the error is as large as the solution (44 % on the finest mesh), for p = 2 and 3 the rate returns
+// On coarse meshes incompressibility is a constraint that takes up degrees of freedom. For p = 1 the rate
+// holds but the error is as large as the solution (44 % on the finest mesh). For p = 2 and 3 the rate returns
 // to p only around h = (mu/lambda)^(1/2) = 1/100.
 TEST_P(Rates2D, SlipNearlyIncompressible)
 {

@@ -1,6 +1,6 @@
 /// @file regularisation_test.cpp
-/// The regularised variant, method section 7: the identities and the guarantee hold at every iterate whatever
-/// delta is, the parts of the stress add up, and with delta everything tends to the plain method.
+/// The regularised variant, method section 7: identities and guarantee hold at every iterate for every delta,
+/// the parts of the stress add up, and as delta tends to 0 everything tends to the plain method.
 
 #include "tribound/adapt/regularisation.h"
 
@@ -19,7 +19,7 @@ namespace tribound::test
 namespace
 {
 
-/// A block on rollers that is pressed down and pulled aside; its contact tractions are about 0.1.
+/// A block on rollers, pressed down and pulled sideways; its contact tractions are about 0.1.
 template <int dim>
 NamedProblem<dim> pulled(const std::string& name, const problem::ContactLaw& law,
                          const problem::Field& gap = 0)
@@ -53,8 +53,7 @@ adapt::Method method(int p)
   return {.degree = p, .newton = {.tolerance = 1e-12}};
 }
 
-/// The largest defect of all iterates, Newton's method going on with a quarter of delta when it has
-/// converged.
+/// The largest defect over all iterates. When Newton's method has converged, it continues with delta / 4.
 template <int dim>
 double largest_defect(int p, const mesh::MeshData<dim>& mesh, const ProblemData<dim>& problem)
 {
@@ -104,7 +103,7 @@ TEST_P(Regularisation, IdentitiesHoldAtEveryIterateIn3D)
   expect_identities<3>(GetParam());
 }
 
-/// The block on another one, of meshes that do not match.
+/// The block on another block, with non-matching meshes.
 template <int dim>
 void expect_identities_between_bodies(int p)
 {
@@ -136,7 +135,7 @@ TEST_P(Regularisation, IdentitiesHoldBetweenBodies)
   if (GetParam() < 3) expect_identities_between_bodies<3>(GetParam());
 }
 
-/// ||a - b - c|| / ||scale||; b and c may be empty, that is 0.
+/// ||a - b - c|| / ||scale||; b and c may be empty (zero).
 double distance(const std::vector<double>& a, const std::vector<double>& b, const std::vector<double>& c,
                 const std::vector<double>& scale)
 {
@@ -146,8 +145,8 @@ double distance(const std::vector<double>& a, const std::vector<double>& b, cons
   return std::sqrt(square) / norm(scale);
 }
 
-/// The patch stresses depend linearly on their data: of the same iterate and the same t^k, sigma_dis does not
-/// know delta, and sigma_lin + sigma_reg is the plain sigma_lin. Without sigma_reg an identity fails.
+/// The patch stresses depend linearly on their data. For the same iterate and t^k, sigma_dis is independent
+/// of delta, and sigma_lin + sigma_reg is the plain sigma_lin. Without sigma_reg an identity fails.
 template <int dim>
 void expect_parts_to_add_up(int p)
 {
@@ -197,7 +196,7 @@ TEST(Regularisation3D, TheBoundHoldsForLargeDelta)
   }
 }
 
-/// u, bound and eta_reg of the converged solution with T_delta.
+/// u, bound and eta_reg of the converged solution for T_delta.
 struct Converged
 {
   std::vector<double> u;
@@ -213,7 +212,7 @@ Converged converged(const DiscreteProblem<2>& c, double delta)
   return {std::move(result.u), std::move(eta)};
 }
 
-/// |T_delta - T| <= delta / 4 on that part of Gamma_C where P is nearer than delta to a kink, and nothing
+/// |T_delta - T| <= delta / 4 on the part of Gamma_C where P is nearer than delta to a kink, and zero
 /// elsewhere: everything tends to the plain method at least as fast as delta.
 TEST_P(Regularisation, TendsToThePlainMethod)
 {
@@ -241,7 +240,7 @@ TEST_P(Regularisation, TendsToThePlainMethod)
 
 INSTANTIATE_TEST_SUITE_P(Degrees, Regularisation, ::testing::Range(1, 4));
 
-/// The outer loop on one mesh: both criteria hold in the end, delta having shrunk by the factor each time.
+/// The outer loop on one mesh: delta shrinks by the factor each time, and both criteria hold at the end.
 TEST(RegularisedLevel, EndsWhereBothCriteriaHold)
 {
   for (const adapt::Stopping stopping : {adapt::Stopping::adaptive, adapt::Stopping::tolerance})

@@ -1,6 +1,6 @@
 /// @file repeated_shapes_test.cpp
-/// The equilibrated stress where cells share what depends on their shape only: the identities, and the stress
-/// on a mesh that differs by much more than rounding and by much less than what matters.
+/// The equilibrated stress when cells share data that depend only on their shape: the identities, and the
+/// stress on a mesh whose change is far above rounding but far too small to matter.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ DiscreteProblem<dim> on_floor(mesh::MeshData<dim> mesh, int degree)
           {.degree = degree}};
 }
 
-/// Every shape comes more often than RepeatedShapes asks for.
+/// Every shape occurs more often than RepeatedShapes requires.
 template <int dim>
 mesh::MeshData<dim> regular_box()
 {

@@ -1,5 +1,5 @@
 /// @file replay_test.cpp
-/// Load paths followed on finer and finer meshes until every step has its tolerance.
+/// Load paths followed on finer and finer meshes until every step meets its tolerance.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Pass
 {
   std::int64_t cells = 0;
   std::vector<double> t;
-  std::vector<double> bound;  ///< over the largest stress so far
+  std::vector<double> bound;  ///< relative to the largest stress so far
   double worst = 0;
 };
 
@@ -39,7 +39,7 @@ adapt::Method method_of(int degree)
   return method;
 }
 
-/// The path of bonded_path.h; `stop` becomes true after as many steps.
+/// The path of bonded_path.h; `stop` becomes true after the given number of steps.
 template <int dim>
 Replayed replayed(const problem::ContactLaw& law, const adapt::AdaptOptions& options, bool pairs,
                   int steps_before_stop = 1'000'000)
@@ -116,8 +116,8 @@ TEST(Replay, APassThatIsInterruptedLeavesTheOneBefore)
   EXPECT_THAT(first.verdict.reason, testing::HasSubstr("interrupted at t = 1.1"));
 }
 
-/// Work of loads and reactions goes into bodies, interface and dissipation, up to the trapezoidal rule, whose
-/// error falls with the square of the steps.
+/// The work of loads and reactions goes into bodies, interface and dissipation, up to the error of the
+/// trapezoidal rule, which falls with the square of the steps.
 TEST(Replay, EnergiesBalance)
 {
   for (const std::size_t i : {1, 3, 4})

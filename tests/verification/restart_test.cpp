@@ -1,5 +1,5 @@
 /// @file restart_test.cpp
-/// Load paths that go on from any of their steps as if they had not been left.
+/// Load paths that continue from any of their steps as if uninterrupted.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace tribound::test::restart_test_cases
 namespace
 {
 
-/// What is compared of a step.
+/// The data of a step that are compared.
 struct Told
 {
   int pass;
@@ -38,7 +38,7 @@ struct Followed
 {
   certify::Verdict verdict{certify::RunStatus::failed, {}};
   std::vector<Told> steps;
-  std::vector<std::filesystem::path> left;  ///< a checkpoint after each of them
+  std::vector<std::filesystem::path> left;  ///< a checkpoint after each step
   adapt::PathEnd end;
   int worst = 0;
 };
@@ -61,7 +61,7 @@ std::unique_ptr<adapt::LoadPath<dim>> path_on(const Case<dim>& of, mesh::Mesh<di
                                                 std::move(mesh));
 }
 
-/// From the beginning, or from a checkpoint.
+/// Runs from the beginning or from a checkpoint.
 template <int dim>
 Followed run(const Case<dim>& of, const std::filesystem::path& checkpoint = {})
 {
@@ -144,7 +144,7 @@ void expect_the_same(const Followed& whole, const Followed& rest)
   }
 }
 
-/// From every so many of its steps.
+/// Restarts from one in `every` steps.
 template <int dim>
 void expect_to_go_on(const Case<dim>& of, std::size_t every)
 {
@@ -193,7 +193,7 @@ TEST(Restart, In3D)
   expect_to_go_on(peeled_case<3>(bonded_laws()[3], false), 4);
 }
 
-/// From before, at and after the peak, which is looked at closely with the steps before it.
+/// Restarts before, at and after the peak; the search for the peak uses the steps before it.
 TEST(Restart, InTheMiddleOfASnapBack)
 {
   const Bar<2> bar(2);
@@ -206,7 +206,7 @@ TEST(Restart, InTheMiddleOfASnapBack)
                   1);
 }
 
-/// The list of load factors may have become longer.
+/// The list of load factors may be longer than before.
 TEST(Restart, FurtherSteps)
 {
   Case<2> of = peeled_case<2>(bonded_laws()[1], false);

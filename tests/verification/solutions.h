@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file solutions.h
-/// Manufactured solutions with active contact. The formulas are checked against each other by differences in
-/// rates_test.cpp.
+/// Manufactured solutions with active contact. rates_test.cpp checks the formulas against each other by
+/// finite differences.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace tribound::test
 {
 
-/// Sticks all over: u = 0 at the bottom, |sigma^t| < s = 1.
+/// Sticks everywhere: u = 0 at the bottom, |sigma^t| < s = 1.
 inline Manufactured<2> smooth_stick()
 {
   const problem::Material m = problem::lame(1.0, 0.3, problem::PlaneModel::strain);
@@ -27,7 +27,7 @@ inline Manufactured<2> smooth_stick()
           .law = Tresca(1)};
 }
 
-/// Slips all over with a threshold that varies; incompressible in the limit of large lambda.
+/// Slips everywhere, with a varying threshold; incompressible in the limit of large lambda.
 inline Manufactured<2> full_slip(double lambda, double mu)
 {
   const double c = 1 / (1 + lambda);
@@ -44,7 +44,7 @@ inline Manufactured<2> full_slip(double lambda, double mu)
           .law = Tresca(formula(fmt::format("{:.17g}*x^2", mu * (lambda + 2) / (6 * (lambda + 1)))))};
 }
 
-/// Slips all over under Coulomb's law: u = (w + y q, -y b + 0.05 y^2 cos x) with w = 0.1 + 0.05 sin x,
+/// Slips everywhere under Coulomb's law: u = (w + y q, -y b + 0.05 y^2 cos x) with w = 0.1 + 0.05 sin x,
 /// b = 0.2 + 0.1 x^2 and q = (mu_F/mu) ((lambda + 2 mu) b - lambda w'), so that sigma_xy = -mu_F sigma_yy at
 /// y = 0.
 inline Manufactured<2> coulomb_slip()
@@ -71,7 +71,7 @@ inline Manufactured<2> coulomb_slip()
           .law = Coulomb(mu_F)};
 }
 
-/// Slips all over, in a direction that turns from point to point: u = (w_1 e^y, -y b, w_3 e^y) with
+/// Slips everywhere, in a direction that varies from point to point: u = (w_1 e^y, -y b, w_3 e^y) with
 /// w = (0.1 + 0.04 sin(x + z), 0.06 + 0.03 cos(x - z)), b = 0.3 + 0.1 x z + 0.1 sin z; so sigma^t = -mu w and
 /// s = mu |w|.
 inline Manufactured<3> turning_slip()

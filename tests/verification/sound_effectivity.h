@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file sound_effectivity.h
-/// The bound at the solution over the dual norm, once its identities are seen to hold.
+/// The bound at the solution over the dual norm, once its identities are checked.
 
 #include <gtest/gtest.h>
 

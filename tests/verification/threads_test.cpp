@@ -1,5 +1,5 @@
 /// @file threads_test.cpp
-/// What is shared out to threads is the same for any number of them, to the last bit.
+/// Results of threaded computations are the same for any number of threads, to the last bit.
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -20,7 +20,7 @@ namespace tribound::test
 namespace
 {
 
-/// A slab with so many facets, nodes and cells that threads are used for each of them.
+/// A slab with enough facets, nodes and cells that loops over each of them use threads.
 template <int dim>
 ProblemData<dim> slab(const problem::ContactLaw& law)
 {
@@ -75,7 +75,7 @@ void expect_the_same(mesh::MeshData<dim> mesh, int degree)
     EXPECT_EQ(shared.traction, alone.traction);
     EXPECT_EQ(shared.norms, alone.norms);
     EXPECT_EQ(shared.identities, alone.identities);
-    // PETSc's product, which one thread takes, may add up in another order.
+    // PETSc's product, used with one thread, may sum in another order.
     EXPECT_LE(norm(sum(shared.product, -1, alone.product)), 1e-14 * norm(alone.product));
   }
   omp_set_num_threads(available);

@@ -1,5 +1,5 @@
 /// @file transfer_control_test.cpp
-/// Load paths under control on meshes that become finer along them: t goes by damage or displacements, over
+/// Controlled load paths on meshes that become finer along them: damage or displacements control t, beyond
 /// its peak.
 
 #include <gmock/gmock.h>
@@ -17,8 +17,8 @@ namespace tribound::transfers
 namespace
 {
 
-/// Along a path that goes by damage t stays where the step on the coarser mesh has found it, and the next
-/// steps and the search for the peak go on from functions of the finer mesh.
+/// On a path controlled by damage, t stays as found on the coarser mesh. The next steps and the search for
+/// the peak continue from functions on the finer mesh.
 TEST(Transfer, PathsUnderControl)
 {
   const problem::ContactLaw law = problem::JointLaw({.tension = {0.05, 0.003}, .coefficient = 0.5});
@@ -45,8 +45,8 @@ TEST(Transfer, PathsUnderControl)
   }
 }
 
-/// A block on a bond that is broken from x = 1.2 on, lifted at its top by 0.04 t: t has a peak and falls
-/// back.
+/// A block on a bond that is broken from x = 1.2 on, lifted at its top by 0.04 t: t has a peak and then
+/// falls.
 ProblemData<2> torn()
 {
   ProblemData<2> data{
@@ -64,7 +64,7 @@ adapt::PathProgram beyond_the_peak()
           .enough_damage = 0.95};
 }
 
-/// Its peak is nearer than a hundredth to that of a mesh that is fine from the beginning.
+/// Its peak is within a hundredth of that on a mesh that is fine from the beginning.
 TEST(Transfer, APeakIsThatOfAFineMesh)
 {
   const adapt::PathProgram program = beyond_the_peak();
@@ -87,8 +87,8 @@ TEST(Transfer, APeakIsThatOfAFineMesh)
   EXPECT_NEAR(end.peak->t, fine.peak->t, 0.01 * fine.peak->t);
 }
 
-/// The peak of the finer mesh may be below the t that the coarser one has found, so that there is no solution
-/// on it, or one on another branch: the step then stays on the coarser one.
+/// The peak on the finer mesh may be below the t found on the coarser one. Then the finer mesh has no
+/// solution, or one on another branch, and the step stays on the coarser mesh.
 TEST(Transfer, AStepBeyondThePeakOfTheFinerMeshStays)
 {
   const adapt::Method method = method_of(1);
@@ -106,7 +106,7 @@ TEST(Transfer, AStepBeyondThePeakOfTheFinerMeshStays)
     EXPECT_NEAR(end.peak.value_or(adapt::Peak()).t, 0.74, 0.01);
     return end.notes;
   };
-  // On which meshes a step is beyond the peak depends on the tolerance.
+  // The tolerance determines on which meshes a step is beyond the peak.
   std::vector<std::string> all;
   for (const double tolerance : {0.07, 0.1, 0.12, 0.18, 0.25})
     std::ranges::move(notes(tolerance), std::back_inserter(all));

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file transfer_paths.h
-/// Load paths on meshes that become finer along them, and what is told of them.
+/// Load paths on meshes that become finer along them, and their reports.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ struct Followed
 {
   certify::Verdict verdict{certify::RunStatus::failed, {}};
   std::vector<double> t;
-  std::vector<double> bound;  ///< over the largest stress so far
+  std::vector<double> bound;  ///< relative to the largest stress so far
   std::vector<std::int64_t> cells;
   std::vector<std::int64_t> meshes;  ///< cells of each, after the first
   int left = 0;

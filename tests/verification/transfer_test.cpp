@@ -1,6 +1,6 @@
 /// @file transfer_test.cpp
-/// Load paths on meshes that become finer along them, with what contact remembers carried from one to the
-/// next.
+/// Load paths on meshes that become finer along them; the history of contact is transferred from mesh to
+/// mesh.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ namespace tribound::transfers
 namespace
 {
 
-/// Bisects all cells, `times` in all.
+/// Bisects all cells, `times` times in total.
 template <int dim>
 adapt::Strategy<dim> everywhere(int times)
 {
   return adapt::make_strategy<dim>({.marking = {.strategy = adapt::Marking::uniform}, .max_levels = times});
 }
 
-/// The segment that x lies in; the last has no other.
+/// The segment that x lies in; the last one if there is no other.
 template <int dim>
 std::pair<std::size_t, Point<dim - 1>> place(const contact::NitscheForm<dim>& form, const Point<dim>& x)
 {
@@ -48,7 +48,7 @@ double distance(const problem::InterfaceState<dim>& a, const problem::InterfaceS
   return std::max({std::abs(a.damage - b.damage), std::abs(a.slipped - b.slipped), (a.slip - b.slip).norm()});
 }
 
-/// The history of a path on some children is the function that it was on their parents.
+/// On children, the history of a path is the same function as on their parents.
 template <int dim>
 void expect_the_same_function(const problem::ContactLaw& law, bool pairs)
 {
@@ -96,8 +96,8 @@ TEST(Transfer, HistoryOfChildrenIsThatOfTheirParents)
   for (const std::size_t i : {1, 3}) expect_the_same_function<3>(bonded_laws()[i], false);
 }
 
-/// The last step of a path that is refined everywhere in its third step, against the path that has been on
-/// that mesh from the beginning, in the norm of the stress, relative; and the larger of their bounds.
+/// The last step of a path that is refined everywhere in its third step, against the path on the fine mesh
+/// from the beginning: their relative difference in the norm of the stress, and the larger of their bounds.
 struct Compared
 {
   double difference;
@@ -129,7 +129,7 @@ Compared transferred_and_replayed(const problem::ContactLaw& law, const std::vec
               sigma};
 }
 
-/// Where damage grows all the time it forgets what it was.
+/// Damage that keeps growing forgets its history.
 TEST(Transfer, MonotonePathsAreThoseOfTheFinerMesh)
 {
   for (const bool pairs : {false, true})
@@ -214,7 +214,7 @@ TEST(Transfer, PairsIn3DAreRefused)
       testing::HasSubstr("not available between bodies in 3D"));
 }
 
-/// Work is made from forces of two steps, the earlier of which have been carried.
+/// Work is computed from the forces of two steps; those of the earlier step were transferred.
 TEST(Transfer, EnergiesBalance)
 {
   for (const std::size_t i : {1, 3})

@@ -1,6 +1,6 @@
 /// @file two_bodies_3d_test.cpp
 /// Contact between elastic bodies in 3D against the numbers of an independent program,
-/// tests/verification/data/two_bodies.json: another rule on the segments, in which kinks make the difference.
+/// tests/verification/data/two_bodies.json. It uses another rule on the segments, which matters at kinks.
 
 #include <gtest/gtest.h>
 
@@ -97,8 +97,8 @@ TEST_P(TwoBodies3D, HasTheForcesAndEnergies)
 
 INSTANTIATE_TEST_SUITE_P(AllCases, TwoBodies3D, ::testing::Range(0, 14));
 
-/// Where kinks of T lie so that the rule on the segments, 64 points there, makes more difference than
-/// elsewhere.
+/// Cases whose kinks of T make the rule on the segments, which has 64 points in the reference, matter more
+/// than elsewhere.
 bool depends_on_the_rule(const json& expected)
 {
   const int iterate = expected["it"];
@@ -129,7 +129,7 @@ std::vector<contact::ContactSegment<3>> quartered(const DiscreteProblem<3>& c,
   return result;
 }
 
-/// The bound with the closed form of the reference file for what is lost between the meshes.
+/// The bound, with the reference file's closed form for what is lost between the meshes.
 certify::Estimate with_closed_form(const contact::NitscheForm<3>& form, const certify::Stress<3>& stress,
                                    certify::Estimate estimate)
 {
@@ -200,7 +200,7 @@ class TwoBodiesFinerRule3D : public ::testing::TestWithParam<int>
 {
 };
 
-/// With the rule on 16 parts of each segment, what does not depend on the segments themselves.
+/// With the rule on 16 parts of each segment: quantities that do not depend on the segments themselves.
 TEST_P(TwoBodiesFinerRule3D, HasStressAndLinearisation)
 {
   const json expected = cases("three_d_bound")[GetParam()];

@@ -1,6 +1,6 @@
 /// @file two_bodies_effectivity_test.cpp
-/// The bound against the dual norm of the residual where bodies touch: random meshes, shapes, materials, laws
-/// and gaps, at the first iterates and at the last.
+/// The bound against the dual norm of the residual for bodies in contact: random meshes, shapes, materials,
+/// laws and gaps, at the first iterates and the last.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace tribound::test
 namespace
 {
 
-/// The quotients of bound and dual norm that were seen.
+/// The observed quotients of bound and dual norm.
 struct Range
 {
   double least = HUGE_VAL;
@@ -96,7 +96,7 @@ TEST_P(RandomPairs2D, TheBoundIsAboveTheDualNorm)
 
 INSTANTIATE_TEST_SUITE_P(Degrees, RandomPairs2D, ::testing::Range(1, 5));
 
-/// On meshes of one or two cells in height, which say little of the stress.
+/// On meshes of one or two cells in height, which resolve the stress poorly.
 TEST(RandomPairs3D, TheBoundIsAboveTheDualNorm)
 {
   for (const auto& [degree, n_cases] : {std::pair(1, 34), {2, 6}})

@@ -1,6 +1,6 @@
 /// @file two_bodies_patch_test.cpp
-/// Constant-stress patch tests of two bodies whose sides need not be parallel: an affine displacement of
-/// either body is reproduced in every state of contact, and its bound is rounding.
+/// Constant-stress patch tests of two bodies whose sides need not be parallel: affine displacements of both
+/// bodies are reproduced in every state of contact, and the bound is rounding.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ namespace
 
 const problem::Material lower_material = lame(2.5, 0.2);
 
-/// The upper body has its slave on y = 0; the master of the lower one is the image of it on the plane
-/// y = -(0.1 + k.x) under Pi(x) = x + l(x) e.
+/// The slave of the upper body lies on y = 0. The master of the lower body is its image under
+/// Pi(x) = x + l(x) e on the plane y = -(0.1 + k.x).
 template <int dim>
 struct Wedge
 {
@@ -43,7 +43,7 @@ struct Wedge
   {
     return Tensor<dim>::Identity() + e * slope_of_l().transpose();
   }
-  /// Out of the lower body.
+  /// Points out of the lower body.
   [[nodiscard]] Point<dim> master_normal() const { return (k + Point<dim>::Unit(1)).normalized(); }
   /// dM/dS.
   [[nodiscard]] double stretch() const
@@ -87,7 +87,7 @@ struct Solution
   Point<dim> traction;  ///< sigma n on the slave
 };
 
-/// That of the lower body from [u] and from forces that are equal and opposite.
+/// The solution; that of the lower body follows from [u] and from equal and opposite forces.
 template <int dim>
 Solution<dim> solution(const Wedge<dim>& wedge, const Tensor<dim>& upper, const Point<dim>& jump,
                        const Tensor<dim>& slope)
@@ -126,7 +126,7 @@ struct State
   std::string name;
   bool sheared;
   bool geometric_gap;
-  double slip;  ///< of the tangential traction, against it
+  double slip;  ///< over the tangential traction, opposite to it
   problem::ContactStatus status;
 };
 
@@ -142,7 +142,7 @@ problem::ContactLaw law_of(const State<dim>& state, const Point<dim>& traction)
   return Frictionless();
 }
 
-/// An exact solution with the problem that has it.
+/// An exact solution, and the problem that it solves.
 template <int dim>
 struct PatchCase
 {
@@ -233,7 +233,7 @@ void expect_exact(const Wedge<dim>& wedge, const State<dim>& state, int degree, 
   const certify::Estimate bound =
       certify::estimate<dim>(c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction));
   EXPECT_LE(std::hypot(bound.global.str, bound.global.lin1, bound.global.cnt + bound.global.frc), 1e-12);
-  EXPECT_LE(bound.total_sharp, 1e-10);  // mor: the root of the part of a facet that rounding leaves uncovered
+  EXPECT_LE(bound.total_sharp, 1e-10);  // mor: the root of the part of a facet left uncovered by rounding
 }
 
 template <class T>
@@ -283,7 +283,7 @@ TYPED_TEST(TwoBodiesPatch, ATieIsTheSameFromBothSides)
     expect_exact<dim>(wedges<dim>()[2], {"tied", true, false, 0, problem::ContactStatus::tied}, degree, true);
 }
 
-/// Nor does that of a solution which is not affine, and neither does its bound.
+/// The same for a non-affine solution and its bound.
 TYPED_TEST(TwoBodiesPatch, ATieHasTheSameBoundFromBothSides)
 {
   constexpr int dim = TypeParam::value;
@@ -317,7 +317,7 @@ TYPED_TEST(TwoBodiesPatch, ATieHasTheSameBoundFromBothSides)
   }
 }
 
-/// Deliberate errors in the segments, each of which an affine solution shows.
+/// Deliberate errors in the segments; an affine solution shows each.
 TYPED_TEST(TwoBodiesPatch, SeesWhatIsWrongInASegment)
 {
   constexpr int dim = TypeParam::value;

@@ -1,6 +1,6 @@
 /// @file two_bodies_rates_test.cpp
-/// Smooth solutions of two bodies on meshes that do not match: error and bound fall like h^p, what the
-/// traction loses between the meshes like h^(p + 1/2). Prints them, with the effectivity of the bound.
+/// Smooth solutions of two bodies on non-matching meshes: error and bound fall like h^p, the loss of traction
+/// between the meshes like h^(p + 1/2). Prints them, with the effectivity of the bound.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,20 +23,20 @@ namespace tribound::test
 namespace
 {
 
-/// Of the whole, in which the sides of the interface y = 0 stay together, without shear if it is even in y;
-/// the solution of the lower body is 1/stiffness of it.
+/// A smooth u of both bodies together: the sides of the interface y = 0 stay together, without shear if u is
+/// even in y. The solution of the lower body is u / stiffness.
 struct SmoothPair
 {
   std::string name;
   problem::ContactLaw law;
-  double stiffness;  ///< E of the lower body, that of the upper one being 1
+  double stiffness;  ///< E of the lower body; E of the upper one is 1
   std::array<std::string, 2> u;
   std::array<std::string, 4> gradient;
   std::array<std::string, 2> divergence_slope;  ///< of div u
   std::array<std::string, 2> laplacian;
 };
 
-/// Pressed everywhere, and sheared by less than friction holds.
+/// Pressed everywhere, and sheared by less than friction can hold.
 SmoothPair sheared(std::string name, problem::ContactLaw law)
 {
   return {.name = std::move(name),
@@ -73,7 +73,7 @@ std::array<std::string, n> scaled(std::array<std::string, n> texts, double facto
   return texts;
 }
 
-/// With 4 n and 3 n squares along the interface.
+/// The problem with 4 n and 3 n squares along the interface.
 DiscreteProblem<2> discrete(const SmoothPair& pair_of_bodies, int p, int n)
 {
   mesh::MeshData<2> data =
@@ -100,7 +100,7 @@ DiscreteProblem<2> discrete(const SmoothPair& pair_of_bodies, int p, int n)
   return {std::move(data), problem, {.degree = p, .newton = {.tolerance = 1e-11}}};
 }
 
-/// What falls with h.
+/// Quantities that fall with h.
 struct Figures
 {
   double error, bound, mor;

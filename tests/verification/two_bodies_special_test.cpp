@@ -1,6 +1,6 @@
 /// @file two_bodies_special_test.cpp
-/// Bodies that meet in unusual ways: the bound stays above the dual norm, and what does not depend on the
-/// order of the sides does not.
+/// Bodies that meet in unusual ways: the bound stays above the dual norm, and results do not depend on the
+/// order of the sides where they should not.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ std::array<int, dim> cells(int x, int y, int z)
     return {x, y, z};
 }
 
-/// A block on a wider one, with sides that may touch.
+/// A block on a wider one; their sides may touch.
 template <int dim>
 mesh::MeshData<dim> on_a_wider_block(double distance = 0)
 {
@@ -104,7 +104,7 @@ ProblemData<dim> pressed(std::vector<problem::ContactPair<dim>> pairs)
           .pairs = std::move(pairs)};
 }
 
-/// On a flat interface the sides may be exchanged: the same energy, bound and components.
+/// On a flat interface, exchanging the sides gives the same energy, bound and components.
 TYPED_TEST(SpecialPairs, EitherSideMayBeTheSlave)
 {
   constexpr int dim = TypeParam::value;
@@ -133,8 +133,8 @@ TYPED_TEST(SpecialPairs, EitherSideMayBeTheSlave)
     }
 }
 
-/// Along normals that meet, images of the slave's facets overlap; along others part of the master is left
-/// out.
+/// Along converging normals, images of the slave's facets overlap; along diverging ones part of the master is
+/// left out.
 TYPED_TEST(SpecialPairs, SocketsAndRidges)
 {
   constexpr int dim = TypeParam::value;
@@ -154,7 +154,7 @@ TYPED_TEST(SpecialPairs, SocketsAndRidges)
     }
 }
 
-/// A boundary whose facets with a centre left of x = 1 are a group of their own.
+/// Splits a boundary: facets with a centre left of x = 1 become a group of their own.
 template <int dim>
 void divide(mesh::MeshData<dim>& data, const std::string& name)
 {
@@ -169,7 +169,7 @@ void divide(mesh::MeshData<dim>& data, const std::string& name)
   data.boundary_names.push_back(name + "_left");
 }
 
-/// A tie and friction meet in a vertex, on both sides.
+/// A tie and friction meet at a vertex, on both sides.
 TYPED_TEST(SpecialPairs, ATieBesideFriction)
 {
   constexpr int dim = TypeParam::value;
@@ -187,7 +187,7 @@ TYPED_TEST(SpecialPairs, ATieBesideFriction)
     expect_sharp<dim>(DiscreteProblem<dim>(data, problem, method(degree)), dim == 2 ? 2 : 4);
 }
 
-/// Two blocks beside each other below one: a chain that closes, and a point in which all three meet.
+/// Two blocks side by side below one: a chain that closes, and a point where all three meet.
 TYPED_TEST(SpecialPairs, ThreeBodiesMeet)
 {
   constexpr int dim = TypeParam::value;
@@ -206,7 +206,7 @@ TYPED_TEST(SpecialPairs, ThreeBodiesMeet)
     expect_sharp<dim>(DiscreteProblem<dim>(data, problem, method(degree)), dim == 2 ? 2 : 4);
 }
 
-/// On meshes that match nothing is lost.
+/// On matching meshes nothing is lost.
 TYPED_TEST(SpecialPairs, NothingIsLostBetweenMeshesThatMatch)
 {
   constexpr int dim = TypeParam::value;

@@ -33,7 +33,7 @@ json reference()
   return json::parse(file);
 }
 
-/// Bodies beside each other with given gaps are the same problem as bodies that touch.
+/// Bodies at a distance with given gaps are the same problem as bodies that touch.
 constexpr double apart = 0.5;
 
 struct Stack
@@ -175,7 +175,7 @@ void expect_components(const certify::Estimate& estimate, const json& expected, 
                                                               {"str_plus_tau", eta.stress()},
                                                               {"total", estimate.total_sharp},
                                                               {"total_plain", estimate.total}};
-  const double rounding = tolerance > 1e-9 ? 10 * total : total;  // of a large contrast
+  const double rounding = tolerance > 1e-9 ? 10 * total : total;  // with a large contrast
   for (const auto& [name, value] : values)
     expect_near(value, expected[name], tolerance, rounding, what + name);
 }
@@ -218,13 +218,13 @@ void expect_iterate(const Assembly& c, const solve::NewtonResult<2>& newton, con
   expect_components(plain, components, tolerance, what);
   expect_per_body(c, plain, expected["per_body"], tolerance, total, what);
   const certify::Estimate resolved = certify::estimate<2>(c.form, newton.u, stress);
-  // The program takes 64 equal parts of each segment, whatever kink there is in one of them.
+  // The independent program takes 64 equal parts of each segment, whatever kinks lie in them.
   expect_near(resolved.total_sharp, components["total_resolved"], 2e-6, 0, what + "total_resolved");
   if (expected["dual_norm_below"].is_null()) return;
   certify::DualNorm<2> dual_norm(c.form, {.refinements = 2, .degree = c.space.degree() + 2});
   const double below = dual_norm(newton.u);
   EXPECT_GE(resolved.total_sharp, below) << what;
-  // Kinks of T are integrated by other rules here and there.
+  // The two programs integrate kinks of T by different rules.
   expect_near(below, expected["dual_norm_below"], what.starts_with("B2_tied") ? 1e-8 : 1e-3, 0,
               what + "dual norm");
 }
@@ -253,7 +253,7 @@ TEST_P(TwoBodies, ReproducesTheIndependentProgram)
   }
 }
 
-/// Meshes that lose so much of the traction between them that a bound without mor is none.
+/// Meshes that lose so much of the traction between them that without mor there is no bound.
 TEST(TwoBodiesBound, NeedsWhatIsLostBetweenTheMeshes)
 {
   struct Expected

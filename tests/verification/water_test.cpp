@@ -1,6 +1,6 @@
 /// @file water_test.cpp
-/// Water in the joint under a dam: statics, the numbers of an independent program, and the bound above the
-/// dual norm.
+/// Water in the joint under a dam: statics, numbers of an independent program, and the bound above the dual
+/// norm.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ io::HydraulicFigures figures_of(const Step& step)
   throw std::logic_error("no contact");
 }
 
-/// Gauges at the heel are what displacement adds to its opening, and its sliding.
+/// Gauges at the heel give the opening that displacement adds, and the sliding.
 template <int dim>
 void expect_gauges_at_heel(const adapt::LoadStep<dim>& step, const std::string& base,
                            const io::HydraulicFigures& figures)
@@ -123,7 +123,7 @@ TEST(Water, DamOfAnIndependentProgram)
   EXPECT_EQ(i, steps.size());
 }
 
-/// At 80 m, by statics: the total resultant is in the kernel, the effective one is not.
+/// At 80 m, by statics: the total resultant lies in the kernel (middle third), the effective one does not.
 TEST(Water, FactorsOfSafety)
 {
   follow(dam(uplift()), {0, 80},
@@ -152,7 +152,7 @@ TEST(Water, FactorsOfSafety)
          });
 }
 
-/// Without efficiency a drain changes nothing; with it there is less uplift.
+/// A drain without efficiency changes nothing; an efficient one reduces the uplift.
 TEST(Water, DrainsTakeUplift)
 {
   double linear = 0;
@@ -173,8 +173,8 @@ TEST(Water, DrainsTakeUplift)
          });
 }
 
-/// The crack carries full pressure up to its tip, which the step itself moves; the uplift is exact whatever
-/// the tip is. The independent program took the kink of the pressure as points see it.
+/// The crack carries full pressure up to its tip, which the step itself moves; the uplift is exact wherever
+/// the tip is. The independent program took the kink of the pressure as the points see it.
 TEST(Water, CracksCarryPressure)
 {
   const json expected = reference()["crack_at_80"];
@@ -198,7 +198,7 @@ TEST(Water, CracksCarryPressure)
   EXPECT_GT(before, 4);
 }
 
-/// Friction alone: the level at which the dam slides is that of statics.
+/// With friction alone, the dam slides at the level given by statics.
 TEST(Water, TheDamSlidesAtTheLevelOfStatics)
 {
   const problem::ContactLaw law = problem::JointLaw({.coefficient = tan_30});
@@ -213,7 +213,7 @@ TEST(Water, TheDamSlidesAtTheLevelOfStatics)
   EXPECT_LE(path.last()->t, limit + 1e-8);
 }
 
-/// Water that presses a block off an obstacle does the work that the block stores.
+/// Water that presses a block off an obstacle does work, which the block stores.
 TEST(Water, WorkOfThePressure)
 {
   ProblemData<2> data{
@@ -239,7 +239,7 @@ TEST(Water, WorkOfThePressure)
   EXPECT_NEAR(work, path.last()->level.norms.energy / 2, 1e-12);
 }
 
-/// A block of 2 x 1 x 1 on a floor, water of the depth t < 1 before its left side and below it: forces,
+/// A block of 2 x 1 x 1 on a floor, with water of depth t < 1 in front of its left side and below it. Forces,
 /// resultants and overturning are those of statics, whatever the mesh; the drain cuts facets.
 TEST(Water, BlockUnderUpliftIn3D)
 {
@@ -273,7 +273,7 @@ TEST(Water, BlockUnderUpliftIn3D)
     EXPECT_NEAR(figures.effective_normal, -0.4 + first + second, 1e-10);
     const double thrust = water * depth * depth / 2;
     EXPECT_NEAR(figures.sliding_safety.value(), 0.9 * (0.4 - first - second) / thrust, 1e-8);
-    // About the toe: trapezoid before the drain, triangle behind.
+    // About the toe: a trapezoid in front of the drain, a triangle behind it.
     const double uplift = heel * 0.37 * (2 - 0.37 / 2) - (heel - at_drain) / 2 * 0.37 * (2 - 0.37 * 2 / 3) +
                           second * (2 - 0.37) * 2 / 3;
     EXPECT_NEAR(figures.overturning.value(), 0.4 / (thrust * depth / 3 + uplift), 1e-9);
@@ -283,7 +283,8 @@ TEST(Water, BlockUnderUpliftIn3D)
   for (const double t : {0.0, depth}) ASSERT_EQ(path.advance(t, check), "");
 }
 
-/// The bound of the first iterates of a step and of its solution is above the dual norm of their residuals.
+/// The bounds of the first iterates of a step and of its solution are above the dual norms of their
+/// residuals.
 void expect_above_dual_norm(const Step& step, std::span<const double> before, double& least)
 {
   const contact::NitscheForm<2>& form = step.at->discrete.form;
@@ -309,7 +310,7 @@ void expect_above_dual_norm(const Step& step, std::span<const double> before, do
   check(step.level.u, step.level.traction);
 }
 
-/// With the tip of a crack, a drain and the surface of the water inside facets.
+/// The tip of a crack, a drain and the water surface lie inside facets.
 TEST(Water, BoundIsAboveTheDualNorm)
 {
   problem::Seepage seepage = uplift(true);
@@ -333,8 +334,8 @@ TEST(Water, BoundIsAboveTheDualNorm)
   }
 }
 
-/// What a rule misses of a pressure that is no polynomial is in the bound; laws that soften, for which it
-/// would not be, refuse it, at the step where it becomes one.
+/// What a rule misses of a non-polynomial pressure is in the bound. It would not be for softening laws; these
+/// refuse such a pressure at the step where it arises.
 TEST(Water, PressuresThatAreNoPolynomials)
 {
   const auto data = [](problem::ContactLaw law)
