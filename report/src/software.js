@@ -73,7 +73,7 @@ export class SoftwareScene {
     this.image.data[4 * pixel + 3] = 255;
   }
 
-  /** The triangle of the corners c, c + 1, c + 2 of projected points; colourAt(weights): of its points. */
+  /** The triangle of the corners c, c + 1, c + 2 of projected points; colourOf(weights): of its points. */
   fill(p, c, colourOf) {
     const { width, height } = this.canvas;
     const [ax, ay, az, bx, by, bz, cx, cy, cz] = p.subarray(3 * c, 3 * c + 9);

@@ -194,7 +194,7 @@ class LoadPath
     double t;
     int cuts = 0;
     std::string control{"load"};
-    std::vector<double> start{};  ///< of the search
+    std::vector<double> start{};  ///< the displacement that the step starts from
     Search search{};
     /// Returns why this solution is not acceptable for the path, empty if it is; may be an empty function.
     std::function<std::string(const contact::NitscheForm<dim>&, std::span<const double> u)> fault{};

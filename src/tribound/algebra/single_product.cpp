@@ -21,7 +21,7 @@ namespace
 constexpr const char* making = "making a matrix in single precision";
 constexpr const char* key = "tribound_single";  // under which the blocks are kept with the matrix
 
-/// 1 / x, or 0 where that is beyond the range of numbers.
+/// 1 / x, or 0 for an x below the smallest normal number.
 double inverse_of(double x)
 {
   return x >= std::numeric_limits<double>::min() ? 1 / x : 0;

@@ -37,8 +37,8 @@ struct StressUnit
   double pascals;
 };
 
-/// For an E that is not structural in `units`: the unit in which it would be, 1 to 1200 GPa, if there is one.
-/// This is the largest of GPa, MPa, kPa and Pa; or ksi or psi where `units` have such stresses.
+/// For an E that is not structural in `units`: the unit in which it would be, 0.5 to 1200 GPa, if there is
+/// one. This is the largest of GPa, MPa, kPa and Pa; or ksi or psi where `units` have such stresses.
 [[nodiscard]] std::optional<StressUnit> meant_unit(double E, const problem::Units& units);
 
 /// Whether a body force, in N/m^3, is close to a weight: that of 500 to 25000 kg/m^3 with gravity 9.81 m/s^2,

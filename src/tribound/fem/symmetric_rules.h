@@ -29,7 +29,7 @@ template <>
 template <>
 [[nodiscard]] std::span<const Orbit<3>> symmetric_rule<3>(int degree);
 
-/// Rules by ascending degree.
+/// A rule and the degree up to which it is exact.
 template <int k>
 struct SymmetricRule
 {
@@ -37,6 +37,7 @@ struct SymmetricRule
   std::span<const Orbit<k>> orbits;
 };
 
+/// Rules by ascending degree.
 template <int k, std::size_t n>
 using SymmetricRules = std::array<SymmetricRule<k>, n>;
 

@@ -14,7 +14,7 @@
 namespace tribound::problem
 {
 
-/// Operations. Those that are functions of the grammar stand in formula_functions().
+/// Operations. Those that are functions of the grammar stand in named_functions().
 enum class Op
 {
   number,

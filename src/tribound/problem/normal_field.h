@@ -49,7 +49,8 @@ struct NormalDeviation
   double quadratic = 0;  ///< P of degree 2
 };
 
-/// Over the convex hull of the points x[i*dim + k], from enclosures; 0 for components without.
+/// Over the convex hull of the points vertices[i*dim + k], from enclosures. Components that have none count
+/// as 0.
 [[nodiscard]] NormalDeviation deviation(const NormalField& normal, std::span<const double> vertices, int dim);
 
 }  // namespace tribound::problem

@@ -40,7 +40,7 @@ struct Contact
   std::optional<Field> gap;
   /// N, by which normal and tangential parts are taken; absent: the outward normal of each facet.
   std::optional<NormalField> normal{};
-  /// What gap and N were made from, in words, such as "obstacle floor"; empty: what is given.
+  /// What gap and N were made from, in words, such as "obstacle floor"; empty: both were given.
   std::string geometry{};
   /// Nonzero where the bond is broken before the first step; absent: nowhere.
   std::optional<Field> broken{};

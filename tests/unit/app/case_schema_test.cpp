@@ -60,7 +60,7 @@ TEST(CaseSchema, SaysWhatTheParserChecks)
   EXPECT_EQ(adapt["properties"]["marking"]["enum"], io::Json({"doerfler", "maximum", "uniform"}));
   EXPECT_EQ(adapt["properties"]["max_dofs"]["default"], 2'000'000);
   EXPECT_EQ(schema["properties"]["degree"]["type"], "integer");
-  // The keys of a material are also those of its regions, one of which may be called plane.
+  // A region may bear the name of a key of the material.
   const io::Json& material = schema["properties"]["material"];
   EXPECT_EQ(material["additionalProperties"]["required"], io::Json({"E", "nu"}));
   EXPECT_EQ(material["properties"]["E"]["type"], io::Json({"number", "object"}));

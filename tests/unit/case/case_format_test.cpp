@@ -386,7 +386,6 @@ TEST(CaseFormat, DefaultsAreThoseOfTheProgram)
   }
 }
 
-/// A key without a default must be given, or is one of several.
 TEST(CaseFormat, TheTablesWereFound)
 {
   const std::vector<Row> rows = documented_keys();

@@ -97,7 +97,7 @@ TEST(DatumMoments, PlanesCutTetrahedra)
   EXPECT_NEAR((integral<3, 3>(slab, 1)), beyond(0, 0.1) - beyond(0.2, 0.1), 1e-15);
 }
 
-/// A kink in a plane and one that is none.
+/// Kinks in planes.
 TEST(DatumMoments, KinksAreCutExactly)
 {
   const auto found = looked_into<2, 2>(formula("max(0, 9*(0.3 - y)) + abs(x - 0.5)"), 1, 0);

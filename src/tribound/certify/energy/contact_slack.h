@@ -34,8 +34,9 @@ class ContactSlack
   explicit ContactSlack(const BoundedState<dim>& state);
 
   [[nodiscard]] const Slack& at(std::size_t k, std::size_t j) const { return slack_[k * n_ + j]; }
-  /// For facets that are closed, or stick: r^n, or r^t, may be nonzero there.
+  /// Whether facet k is closed and not also open: r^n may be nonzero there.
   [[nodiscard]] bool is_pressed(std::size_t k) const { return is_pressed_[k] != 0; }
+  /// Whether facet k has friction and sticks: r^t may be nonzero there.
   [[nodiscard]] bool is_held(std::size_t k) const { return is_held_[k] != 0; }
 
   /// Cuts the coefficients of r on facet k to the limits.

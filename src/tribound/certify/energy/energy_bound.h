@@ -35,7 +35,7 @@ struct EnergyBound
   double b_v = 0;                  ///< bounds ||u - v||_en
   double mid = 0;                  ///< bounds the distance of sigma(u) from (tau + sigma(v))/2
   double dist = 0;                 ///< the distance of sigma(u_h) from the same
-  double gap = 0;                  ///< E, the duality gap of v and tau
+  double gap = 0;                  ///< E, the duality gap of v and tau, in 2D plus ||O|| B_v
   double correction = 0;           ///< ||u_h - v||_en
   double contact = 0;              ///< G_c
   double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials
