@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "tribound/base/dense_factors.h"
+#include "support/generalized_eigen.h"
 
 namespace tribound::test
 {
@@ -66,17 +66,13 @@ std::vector<Motion<dim>> hardly_stopped(const DenseData<dim>& given, const Dense
       }
   }
   if (values.isZero(0)) return all;
-  // fixed x = lambda values x with values = L L^T: the eigenvectors are L^{-T} y
-  const MatrixXd lower = CholeskyFactors(values).lower();
-  const MatrixXd half = solve_lower(lower, fixed).transpose();
-  const SymmetricEigen eigen = symmetric_eigen(solve_lower(lower, half));
-  const MatrixXd vectors = solve_lower_transposed(lower, eigen.vectors);
+  const SymmetricEigen eigen = generalized_eigen(fixed, values);
   std::vector<Motion<dim>> result;
   for (int k = 0; k < n && eigen.values[k] < 0.35 * 0.35; ++k)
   {
     Motion<dim>& z = result.emplace_back(all[0]);
     z.spin.setZero();
-    for (int i = 0; i < n; ++i) z.spin += vectors(i, k) * all[i].spin;
+    for (int i = 0; i < n; ++i) z.spin += eigen.vectors(i, k) * all[i].spin;
   }
   return result;
 }

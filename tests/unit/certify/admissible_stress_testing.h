@@ -203,9 +203,7 @@ class DenseAdmissible
         scaled.middleCols(b * block, block) += inverse(a, b) * matrix_.middleCols(a * block, block);
         target.segment(a * block, block) += root(a, b) * v.segment(b * block, block);
       }
-    const Eigen::ArrayXd pivots = PivotedQr(scaled).upper().diagonal().array().abs();
-    rank_ = (pivots > 1e-9 * pivots[0]).count();
-    const Eigen::VectorXd difference = least_norm_solution(scaled, data_vector_ - scaled * target, 1e-9);
+    const Eigen::VectorXd difference = least_norm_solution(scaled, data_vector_ - scaled * target, dependent);
     residual_ = (scaled * (target + difference) - data_vector_).norm() / data_vector_.norm();
     square_ = difference.squaredNorm();
     tau_ = v;
@@ -216,7 +214,12 @@ class DenseAdmissible
 
   [[nodiscard]] double square() const { return square_; }
   [[nodiscard]] double residual() const { return residual_; }  ///< relative, of the constraints
-  [[nodiscard]] Eigen::Index kernel() const { return matrix_.cols() - rank_; }
+  /// Dimension of the kernel of the constraints.
+  [[nodiscard]] Eigen::Index kernel() const
+  {
+    const Eigen::ArrayXd pivots = PivotedQr(matrix_).upper().diagonal().array().abs();
+    return matrix_.cols() - (pivots > dependent * pivots[0]).count();
+  }
   [[nodiscard]] StressAt<dim> tau(int i, const Point<dim>& x) const
   {
     return evaluate<dim>(BasisAt<dim>(data_.piece(i), data_.degree, x),
@@ -225,6 +228,7 @@ class DenseAdmissible
 
  private:
   static constexpr int n_entries = dim * (dim + 1) / 2;
+  static constexpr double dependent = 1e-9;  ///< relative pivots of dependent constraints
 
   [[nodiscard]] static int entry(int r, int c)
   {
@@ -319,7 +323,6 @@ class DenseAdmissible
   int n_;
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd data_vector_;
-  Eigen::Index rank_ = 0;
   double residual_ = 0;
   double square_ = 0;
   Eigen::VectorXd tau_;

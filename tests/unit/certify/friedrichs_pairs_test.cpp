@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "support/discrete_problem.h"
+#include "support/generalized_eigen.h"
 #include "support/meshes.h"
-#include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/friedrichs.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/fem/quadrature.h"
@@ -70,10 +70,7 @@ double ritz_constant(const problem::Problem<dim>& problem, mesh::Mesh<dim> mesh,
     if (is_free[v]) free.push_back(v);
   const Eigen::MatrixXd free_A = A(free, free);
   const Eigen::MatrixXd free_M = M(free, free);
-  // M x = lambda A x with A = L L^T: the eigenvalues of L^{-1} M L^{-T}
-  const Eigen::MatrixXd lower = CholeskyFactors(free_A).lower();
-  const Eigen::MatrixXd half = solve_lower(lower, free_M).transpose();
-  return std::sqrt(symmetric_eigen(solve_lower(lower, half)).values.maxCoeff());
+  return std::sqrt(generalized_eigen(free_M, free_A).values.maxCoeff());
 }
 
 /// Bodies that only others hold: one on a clamped block, a chain of three, and with a coarse and a fine mesh.
