@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """A run killed before any change to its directory of results leaves nothing there that contradicts the certificate.
 
-    kills.py PROGRAM KILL_AT_CHANGE MPIRUN
+    kills.py PROGRAM AT_CHANGE MPIRUN
 
-KILL_AT_CHANGE is the library of kill_at_change.cpp. Every scenario is killed at all places, one after the other, until a run
-is no longer killed.
+AT_CHANGE is the library of at_change.cpp. A run of one process copies its directory at each place where it could be killed.
+Runs of several processes are killed at one place after the other, until a run is no longer killed.
 """
 
+import itertools
 import json
 import re
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
@@ -30,6 +30,7 @@ ENVIRONMENT = runner.ENVIRONMENT | {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_odls_base_sigkill_timeout": "0",  # or mpirun sleeps for a second where processes end with code 3
 }
 
 LEVELS = """
@@ -82,10 +83,11 @@ SHORTER = ["--set", "history.steps=[0.0005, 0.001, 0.0011]"]
 MORE = ["--set", "adapt.max_levels=3"]
 
 
-def tribound(directory, *arguments, kill_at=None, ranks=1):
+def tribound(directory, *arguments, at_change=None, ranks=1):
+    """at_change: a variable of at_change.cpp and its value."""
     command = [PROGRAM, "run", "-q", *arguments]
-    if kill_at is not None:
-        command = ["env", f"LD_PRELOAD={LIBRARY}", f"KILL_AT_CHANGE={kill_at}", *command]
+    if at_change:
+        command = ["env", f"LD_PRELOAD={LIBRARY}", "=".join(map(str, at_change)), *command]
     if ranks > 1:
         command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", str(ranks), *command]
     return subprocess.run(command, cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, timeout=runner.TIME_LIMIT)
@@ -158,6 +160,30 @@ def same_mesh(reference, certificate, key, number):
     return cells[0] == cells[1]
 
 
+def left_by_kills(folder, arguments, ranks, stride):
+    """Pairs of the place of a kill and the directory of results left by it; at the end None and the one of a whole run."""
+    if ranks == 1:
+        restore(folder)
+        (folder / "copies").mkdir()
+        result = tribound(folder, *arguments, at_change=("COPIES", folder / "copies"))
+        yield from sorted((int(copy.name), copy) for copy in (folder / "copies").iterdir())
+    else:
+        for kill_at in itertools.count(1, stride):
+            restore(folder)
+            result = tribound(folder, *arguments, at_change=("KILL_AT_CHANGE", kill_at), ranks=ranks)
+            if result.returncode in (0, 3):
+                break
+            yield kill_at, folder / "out"
+    if result.returncode not in (0, 3):
+        sys.exit(f"exit code {result.returncode} without a kill: {result.stderr}")
+    yield None, folder / "out"
+
+
+def restore(folder):
+    shutil.rmtree(folder / "out")
+    shutil.copytree(folder / "base", folder / "out")
+
+
 def scenario(name, case, before, arguments, ranks=1, stride=1):
     """`before`: runs that leave their results, one after the other. Then the run with the arguments, which is killed."""
     problems = []
@@ -175,21 +201,14 @@ def scenario(name, case, before, arguments, ranks=1, stride=1):
             problems += [f"{name}, not killed: {text}" for text in contradictions(folder / "out", [])]
             references.append(folder / f"whole_{k}")
             shutil.copytree(folder / "out", references[-1])
-        kill_at = 1
-        while True:
-            shutil.rmtree(folder / "out")
-            shutil.copytree(folder / "base", folder / "out")
-            result = tribound(folder, *arguments, kill_at=kill_at, ranks=ranks)
-            problems += [f"{name}, killed at change {kill_at}: {text}" for text in contradictions(folder / "out", references)]
-            if result.returncode in (0, 3):
-                break
-            if ranks == 1 and result.returncode != -signal.SIGKILL:
-                problems.append(f"{name}, killed at change {kill_at}: exit code {result.returncode}: {result.stderr}")
-            kill_at += stride
+        places = 0
+        for place, out in left_by_kills(folder, arguments, ranks, stride):
+            places += place is not None
+            problems += [f"{name}, killed at change {place}: {text}" for text in contradictions(out, references)]
         files = [{str(path.relative_to(top)) for path in top.rglob("*")} for top in (references[-1], folder / "out")]
         if files[0] != files[1]:
             problems.append(f"{name}: {files[0] ^ files[1]} differ from a run that was not killed")
-    print(f"{name}: {kill_at - 1} places, {len(problems)} problems")
+    print(f"{name}: {places} places, {len(problems)} problems")
     return problems
 
 
@@ -209,19 +228,17 @@ def a_check_of_the_history_that_is_killed():
         (folder / "case.toml").write_text(STEPS.replace("[adapt]", "check = true\n[adapt]"))
         tribound(folder, "case.toml")
         whole = read_certificate(folder / "out")["history_check"]
+        (folder / "base").mkdir()
         found = False
-        for kill_at in range(1, 1000):
-            shutil.rmtree(folder / "out")
-            if tribound(folder, "case.toml", kill_at=kill_at).returncode in (0, 3):
-                break
-            certificate = read_certificate(folder / "out")
+        for place, out in left_by_kills(folder, ["case.toml"], ranks=1, stride=1):
+            certificate = read_certificate(out)
             files = {"contact.csv", "adapted.msh", "report.html", "step_004.vtu"}
-            if not certificate or "history_check" in certificate or not all((folder / "out" / f).exists() for f in files):
+            if not certificate or "history_check" in certificate or not all((out / f).exists() for f in files):
                 continue
             found = True
-            tribound(folder, "--restart", "out")
-            if not agree(whole, read_certificate(folder / "out").get("history_check")):
-                return [f"killed at change {kill_at}: no check after a restart that had nothing left to do"]
+            tribound(folder, "--restart", out)
+            if not agree(whole, read_certificate(out).get("history_check")):
+                return [f"killed at change {place}: no check after a restart that had nothing left to do"]
         return [] if found else ["no place where all is there but the check"]
 
 
