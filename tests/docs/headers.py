@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks that tribound.h reaches every public header.
+"""Checks that tribound.h reaches every public header, and that these need nothing but the standard library and Eigen.
 
     headers.py ROOT
 
@@ -16,6 +16,12 @@ def includes(file):
     return re.findall(r'#include "(.*?)"', file.read_text())
 
 
+def foreign(file):
+    """Headers of libraries that users of this one would have to install."""
+    found = re.findall(r"#include <(.*?)>", file.read_text())
+    return [header for header in found if not re.fullmatch(r"[a-z_0-9]+|Eigen/.*", header)]
+
+
 def room(file):
     return file.parts[1]
 
@@ -30,7 +36,7 @@ def main():
         if header not in reached and Path(header) in users:
             reached.add(header)
             pending += users[Path(header)]
-    problems = []
+    problems = [f"{header} includes {name}" for header in sorted(reached) for name in foreign(source / header)]
     for file in users:
         if file.suffix != ".h" or str(file) in reached or file.parent.name == "base":
             continue

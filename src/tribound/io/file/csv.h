@@ -3,8 +3,6 @@
 /// @file csv.h
 /// Tables, and their text: rows of comma-separated values (RFC 4180).
 
-#include <fmt/format.h>
-
 #include <optional>
 #include <span>
 #include <string>
@@ -16,13 +14,7 @@ namespace tribound::io
 {
 
 /// A text as written in a cell.
-[[nodiscard]] inline std::string csv_cell(std::string_view value)
-{
-  if (value.find_first_of(",\"\n") == std::string_view::npos) return std::string(value);
-  std::string cell = "\"";
-  for (const char c : value) cell.append(c == '"' ? 2 : 1, c);
-  return cell + '"';
-}
+[[nodiscard]] std::string csv_cell(std::string_view value);
 
 /// Builds a table row by row. Numbers are printed with the fewest digits that read back as the same number.
 class CsvTable
@@ -37,16 +29,8 @@ class CsvTable
     text_ += csv_cell(value);
   }
   /// -0 is written as 0: the sign of zero is no result.
-  void add(double value)
-  {
-    separate();
-    fmt::format_to(std::back_inserter(text_), "{}", value + 0.0);
-  }
-  void add(long value)
-  {
-    separate();
-    fmt::format_to(std::back_inserter(text_), "{}", value);
-  }
+  void add(double value);
+  void add(long value);
   void add(int value) { add(static_cast<long>(value)); }
   /// An unknown number leaves its cell empty.
   void add(std::optional<double> value) { value ? add(*value) : add(std::string_view{}); }
@@ -80,18 +64,6 @@ struct TableCell
 using TableRow = std::vector<TableCell>;
 
 /// The rows below their column names, which are those of `any`, so that a table without rows has them, too.
-[[nodiscard]] inline std::string csv_text(const TableRow& any, std::span<const TableRow> rows)
-{
-  std::string names;
-  for (const TableCell& cell : any) names += (names.empty() ? "" : ",") + csv_cell(cell.name);
-  CsvTable table(names);
-  for (const TableRow& row : rows)
-  {
-    for (const TableCell& cell : row)
-      std::visit([&table](const auto& value) { table.add(value); }, cell.value);
-    table.end_row();
-  }
-  return table.text();
-}
+[[nodiscard]] std::string csv_text(const TableRow& any, std::span<const TableRow> rows);
 
 }  // namespace tribound::io
