@@ -26,7 +26,7 @@ struct VerifiedQuantity
 {
   certify::QuantityInterval interval{};               ///< with the value of the iterate
   std::optional<certify::QuantityInterval> richer{};  ///< of the richer solution, with its value
-  /// Whether the interval contains the exact value: it must intersect that of the richer solution.
+  /// Whether the interval intersects that of the richer solution, as it must: both contain the exact value.
   certify::IntervalComparison comparison{};
 
   /// The position in the interval of the richer solution's value, 0: at the lower end, 1: at the upper.

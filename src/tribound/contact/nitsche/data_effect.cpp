@@ -7,6 +7,7 @@
 
 #include "tribound/contact/nitsche/given_data.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {

@@ -12,6 +12,7 @@
 #include "tribound/base/error.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {
@@ -76,28 +77,6 @@ std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k,
 }
 
 }  // namespace
-
-template <int dim, int n>
-Point<n> Datum<dim, n>::operator()(const Point<dim>& x) const
-{
-  Point<n> f = Point<n>::Zero();
-  for (const auto& [value, direction] : terms) f += (*value)(x)*direction;
-  return f;
-}
-
-template <int dim, int n>
-int Datum<dim, n>::degree() const
-{
-  int largest = 0;
-  for (const Term& term : terms) largest = std::max(largest, term.value->degree());
-  return largest;
-}
-
-template <int dim, int n>
-bool Datum<dim, n>::is_enclosed() const
-{
-  return std::ranges::all_of(terms, [](const Term& term) { return term.value->is_enclosed(); });
-}
 
 template <int k, int dim, int n>
 DatumMoments<k, dim, n>::DatumMoments(int p, int projected)
@@ -343,9 +322,6 @@ Point<n> DatumMoments<k, dim, n>::evaluate(std::span<const Point<n>> moments, co
   return value;
 }
 
-template struct Datum<2>;
-template struct Datum<2, 3>;
-template struct Datum<3>;
 template class DatumMoments<1, 2>;
 template class DatumMoments<1, 2, 3>;
 template class DatumMoments<2, 2>;

@@ -13,32 +13,13 @@
 #include <vector>
 
 #include "tribound/base/types.h"
+#include "tribound/contact/nitsche/datum.h"
 #include "tribound/contact/nitsche/simplex_map.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/simplex_parts.h"
-#include "tribound/problem/field.h"
-#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {
-
-/// f(x) = sum_j value_j(x) direction_j, with n components.
-template <int dim, int n = dim>
-struct Datum
-{
-  struct Term
-  {
-    const problem::Field* value;
-    Point<n> direction;
-  };
-  std::vector<Term> terms;
-
-  [[nodiscard]] Point<n> operator()(const Point<dim>& x) const;
-  /// The largest degree of a term; not_polynomial if a term is not a polynomial.
-  [[nodiscard]] int degree() const;
-  /// Whether all terms are enclosed.
-  [[nodiscard]] bool is_enclosed() const;
-};
 
 /// A part of the simplex on which one rule integrates the datum.
 template <int k, int n>

@@ -9,6 +9,7 @@
 #include "tribound/contact/nitsche/given_data.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {
