@@ -29,7 +29,7 @@ template <int dim>
 io::LevelRecord RunReport<dim>::record_of(const adapt::LevelView<dim>& view,
                                           const adapt::LoadStep<dim>* step) const
 {
-  io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_);
+  io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_, record_.facts.units);
   if (!step) return record;
   const std::optional<io::LoadStepRecord> before = io::last_load_step(record_);
   record.load_step = io::load_step_record<dim>(*step, before ? &*before : nullptr, config_.history->watch);

@@ -17,9 +17,9 @@ namespace
 {
 
 /// A field in words: its value where it is constant.
-std::string text(const Field& field)
+std::string text(const Field& field, const std::string& unit)
 {
-  return field.is_constant() ? fmt::format("{:.6g}", field.constant()) : "varies";
+  return field.is_constant() ? fmt::format("{:.6g}{}", field.constant(), unit) : "varies";
 }
 
 template <FrictionLaw L>
@@ -68,51 +68,55 @@ Value of_bond(const ContactLaw& law, const Value& without, const Of& of)
 
 Coulomb::Coulomb(std::span<const Field> values) : coefficient(values[0].constant()) {}
 
-std::string Frictionless::words() const
+std::string Frictionless::words(const Units& /*units*/) const
 {
   return "no friction";
 }
 
-std::string Tresca::words() const
+std::string Tresca::words(const Units& units) const
 {
-  return fmt::format("Tresca friction, threshold {}", text(threshold));
+  return "Tresca friction, threshold " + text(threshold, units.behind(UnitOf::stress));
 }
 
-std::string Tied::words() const
+std::string Tied::words(const Units& /*units*/) const
 {
   return "tied";
 }
 
-std::string Coulomb::words() const
+std::string Coulomb::words(const Units& /*units*/) const
 {
   return fmt::format("Coulomb friction, coefficient {:.6g}", coefficient);
 }
 
-std::string JointLaw::words() const
+std::string JointLaw::words(const Units& units) const
 {
+  const std::string stress = units.behind(UnitOf::stress);
   std::string text = "joint";
   if (tension.strength > 0)
-    text += fmt::format(", tensile strength {:.6g}, fracture energy {:.6g}", tension.strength,
-                        tension.fracture_energy);
-  if (cohesion > 0) text += fmt::format(", cohesion {:.6g}", cohesion);
+    text += fmt::format(", tensile strength {:.6g}{}, fracture energy {:.6g}{}", tension.strength, stress,
+                        tension.fracture_energy, units.behind(UnitOf::fracture_energy));
+  if (cohesion > 0) text += fmt::format(", cohesion {:.6g}{}", cohesion, stress);
   if (cohesion > 0 && std::isfinite(slip_length))
-    text += fmt::format(", lost on a slip of {:.6g}", slip_length);
+    text += fmt::format(", lost on a slip of {:.6g}{}", slip_length, units.behind(UnitOf::length));
   if (coefficient > 0) text += fmt::format(", friction coefficient {:.6g}", coefficient);
-  if (!threshold.is_zero()) text += fmt::format(", threshold {}", problem::text(threshold));
+  if (!threshold.is_zero()) text += ", threshold " + problem::text(threshold, stress);
   return text + (stick ? ", no slip before it breaks" : "");
 }
 
-std::string MixedLaw::words() const
+std::string MixedLaw::words(const Units& units) const
 {
-  return fmt::format("mixed-mode bond, tensile strength {:.6g}, fracture energy {:.6g}, shear ratio {:.6g}{}",
-                     tension.strength, tension.fracture_energy, shear_ratio,
-                     coefficient > 0 ? fmt::format(", friction coefficient {:.6g}", coefficient) : "");
+  return fmt::format(
+      "mixed-mode bond, tensile strength {:.6g}{}, fracture energy {:.6g}{}, shear ratio {:.6g}{}",
+      tension.strength, units.behind(UnitOf::stress), tension.fracture_energy,
+      units.behind(UnitOf::fracture_energy), shear_ratio,
+      coefficient > 0 ? fmt::format(", friction coefficient {:.6g}", coefficient) : "");
 }
 
-std::string EndoLaw::words() const
+std::string EndoLaw::words(const Units& units) const
 {
-  return fmt::format("elastoplastic joint with damage, tensile strength {:.6g}, cohesion {:.6g}",
-                     tensile_strength(), Endo::cohesion());
+  const std::string stress = units.behind(UnitOf::stress);
+  return fmt::format("elastoplastic joint with damage, tensile strength {:.6g}{}, cohesion {:.6g}{}",
+                     tensile_strength(), stress, Endo::cohesion(), stress);
 }
 
 namespace
@@ -260,9 +264,9 @@ FrictionCone cone(const ContactLaw& law)
   return std::visit([](const auto& l) { return l.cone(); }, law);
 }
 
-std::string words(const ContactLaw& law)
+std::string words(const ContactLaw& law, const Units& units)
 {
-  return std::visit([](const auto& l) { return l.words(); }, law);
+  return std::visit([&](const auto& l) { return l.words(units); }, law);
 }
 
 std::string_view name(const ContactLaw& law)

@@ -20,6 +20,7 @@
 #include "tribound/base/types.h"
 #include "tribound/problem/field.h"
 #include "tribound/problem/interface_law.h"
+#include "tribound/problem/units.h"
 
 namespace tribound::problem
 {
@@ -74,7 +75,7 @@ struct Frictionless
 
   explicit Frictionless(std::span<const Field> = {}) {}
   [[nodiscard]] FrictionCone cone() const { return {}; }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 /// |sigma^t| <= s(x).
@@ -90,7 +91,7 @@ struct Tresca
   explicit Tresca(Field s) : threshold(std::move(s)) {}
   explicit Tresca(std::span<const Field> values) : threshold(values[0]) {}
   [[nodiscard]] FrictionCone cone() const { return {.strength = &threshold}; }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 /// |sigma^t| <= mu_F |sigma^n|.
@@ -106,7 +107,7 @@ struct Coulomb
   explicit Coulomb(double mu) : coefficient(mu) {}
   explicit Coulomb(std::span<const Field> values);
   [[nodiscard]] FrictionCone cone() const { return {.coefficient = coefficient}; }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 /// [u] = 0, only between bodies: T(P) = P.
@@ -118,7 +119,7 @@ struct Tied
 
   explicit Tied(std::span<const Field> = {}) {}
   [[nodiscard]] FrictionCone cone() const { return {.is_tied = true}; }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 /// Joint with a friction threshold that may vary.
@@ -137,7 +138,7 @@ struct JointLaw : Joint
             .is_bonded = is_bonded(),
             .holds_tension = tension.strength > 0};
   }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 struct MixedLaw : Mixed
@@ -150,7 +151,7 @@ struct MixedLaw : Mixed
   {
     return {.coefficient = coefficient, .is_bonded = true, .holds_tension = true};
   }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 struct EndoLaw : Endo
@@ -163,7 +164,7 @@ struct EndoLaw : Endo
   {
     return {.coefficient = coefficient, .is_bonded = true, .holds_tension = true};
   }
-  [[nodiscard]] std::string words() const;
+  [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
 /// What every law has: its name, what it holds at most, its description, and whether the solution is the
@@ -244,7 +245,7 @@ template <int dim>
 [[nodiscard]] bool has_memory(const ContactLaw& law);
 
 /// Such as "Tresca friction, threshold 0.03".
-[[nodiscard]] std::string words(const ContactLaw& law);
+[[nodiscard]] std::string words(const ContactLaw& law, const Units& units = {});
 
 /// "none", "tresca", ..., "endo".
 [[nodiscard]] std::string_view name(const ContactLaw& law);

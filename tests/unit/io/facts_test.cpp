@@ -27,7 +27,7 @@ TEST(Facts, NumbersInWordsCarryTheirUnits)
   EXPECT_EQ(io::describe(loaded<2>(fixed<2>("left", 0.1, free), 0, 0.5), units),
             "displacement (0.1, free) mm, traction (0, 0.5) MPa");
   EXPECT_EQ(io::describe(obstacle<2>("bottom", Tresca(0.03), 0.25), units),
-            "contact, Tresca friction, threshold 0.03, gap 0.25 mm");
+            "contact, Tresca friction, threshold 0.03 MPa, gap 0.25 mm");
 }
 
 TEST(Facts, MeshAndBoundary)

@@ -66,7 +66,8 @@ std::string pair_words(const problem::Problem<dim>& problem, int tag, const prob
 {
   if (const problem::ContactPair<dim>* pair = problem.pair_of_slave(tag))
     return fmt::format(
-        "contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "), problem::words(pair->contact.law),
+        "contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "),
+        problem::words(pair->contact.law, units),
         pair->contact.gap ? text(*pair->contact.gap, units.behind(UnitOf::length, dim)) : "of the meshes",
         geometry_words(pair->contact));
   if (const problem::ContactPair<dim>* pair = problem.pair_of_master(tag))
@@ -139,7 +140,7 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
     add("traction " + vector([&](int i) { return text(condition.traction[i]); }) + stress);
   if (condition.pressure) add("pressure " + text(*condition.pressure, stress));
   if (condition.contact)
-    add("contact, " + problem::words(condition.contact->law) + ", gap " +
+    add("contact, " + problem::words(condition.contact->law, units) + ", gap " +
         text(*condition.contact->gap, length) + geometry_words(*condition.contact));
   return words.empty() ? "traction-free" : words;
 }

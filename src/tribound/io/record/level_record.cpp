@@ -25,7 +25,7 @@ void drop_cells(certify::EnergyBound& bound)
 
 template <int dim>
 LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
-                         const std::vector<bool>& slides)
+                         const std::vector<bool>& slides, const problem::Units& units)
 {
   const contact::NitscheForm<dim>& form = view.discrete.form;
   const adapt::CertifiedLevel<dim>& level = view.level;
@@ -37,7 +37,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   record.finishing_steps = level.finishing_steps;
   record.delta_updates = level.delta_updates;
   record.paired = !form.problem().pairs().empty();
-  record.figures = solution_figures(form, level, slides);
+  record.figures = solution_figures(form, level, slides, units);
   if (level.solved() && !certify::is_round_off(level.estimate, level.norms))
     record.identities = level.identities;  // meaningless relative to rounding
   if (certify::is_bound(view.verdict.status))
@@ -111,7 +111,9 @@ bool is_round_off(const LevelRecord& level)
   return level.bound && certify::is_round_off(*level.bound, norms);
 }
 
-template LevelRecord level_record(const adapt::LevelView<2>&, const Point<2>&, const std::vector<bool>&);
-template LevelRecord level_record(const adapt::LevelView<3>&, const Point<3>&, const std::vector<bool>&);
+template LevelRecord level_record(const adapt::LevelView<2>&, const Point<2>&, const std::vector<bool>&,
+                                  const problem::Units&);
+template LevelRecord level_record(const adapt::LevelView<3>&, const Point<3>&, const std::vector<bool>&,
+                                  const problem::Units&);
 
 }  // namespace tribound::io

@@ -69,12 +69,12 @@ struct LevelRecord
   std::optional<int> load_step_number;  ///< of the worst step, where `level` is the number of a pass
 };
 
-/// The record of a level reported by the loop, with moments about the given point; `slides`: as in
-/// doctor::slides_as_a_whole(). Where the verdict says that there is no bound, no step shows one. The times
+/// The record of a level reported by the loop, with moments about the given point; `slides` and `units`: as
+/// solution_figures() has them. Where the verdict says that there is no bound, no step shows one. The times
 /// of output, and level_cpu, are not set.
 template <int dim>
 [[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
-                                       const std::vector<bool>& slides);
+                                       const std::vector<bool>& slides, const problem::Units& units = {});
 
 /// bound / largest_sigma for a load step; otherwise nothing, also where there is no stress.
 [[nodiscard]] std::optional<double> bound_along_path(const LevelRecord& level);

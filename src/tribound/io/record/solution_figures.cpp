@@ -67,11 +67,11 @@ void add_moments(Resultants& result, const contact::NitscheForm<dim>& form, std:
 
 template <int dim>
 PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const double> u, int tag,
-                         const problem::ContactPair<dim>& pair)
+                         const problem::ContactPair<dim>& pair, const problem::Units& units)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   PairFigures figures{.master = pair.master,
-                      .law = problem::words(pair.contact.law),
+                      .law = problem::words(pair.contact.law, units),
                       .smallest_gap = std::numeric_limits<double>::infinity(),
                       .largest_gap = -std::numeric_limits<double>::infinity()};
   std::array<double, 4> sums{};
@@ -180,7 +180,8 @@ std::optional<Sliding> sliding(const Resultants& resultants)
 
 template <int dim>
 SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
-                                 const adapt::CertifiedLevel<dim>& level, const std::vector<bool>& slides)
+                                 const adapt::CertifiedLevel<dim>& level, const std::vector<bool>& slides,
+                                 const problem::Units& units)
 {
   SolutionFigures figures;
   figures.round_off = level.norms.round_off;
@@ -203,7 +204,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     Resultants part = resultants<dim>(form, t, level.traction, tag);
     part.boundary = boundaries[tag].name;
     if (const problem::ContactPair<dim>* pair = form.problem().pair_of_slave(tag))
-      part.pair = pair_figures(form, level.u, tag, *pair);
+      part.pair = pair_figures(form, level.u, tag, *pair, units);
     add_moments<dim>(part, form, t, level.traction, tag);
     const problem::FrictionCone friction = cone(contact->law);
     const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
@@ -216,8 +217,8 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
 }
 
 template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&,
-                                          const std::vector<bool>&);
+                                          const std::vector<bool>&, const problem::Units&);
 template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,
-                                          const std::vector<bool>&);
+                                          const std::vector<bool>&, const problem::Units&);
 
 }  // namespace tribound::io

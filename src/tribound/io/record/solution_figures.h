@@ -84,10 +84,11 @@ struct SolutionFigures
 /// The figures of the solution on a level, with the contact traction T(u). Forces have only the known digits
 /// of the discrete solution: t^k is in equilibrium with the loads, T(u^k) satisfies the contact laws, and
 /// their difference is the remaining error of Newton's method. A stress at rounding level is 0. `slides`: as
-/// in doctor::slides_as_a_whole().
+/// in doctor::slides_as_a_whole(). `units`: of the laws in words.
 template <int dim>
 [[nodiscard]] SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
                                                const adapt::CertifiedLevel<dim>& level,
-                                               const std::vector<bool>& slides);
+                                               const std::vector<bool>& slides,
+                                               const problem::Units& units = {});
 
 }  // namespace tribound::io
