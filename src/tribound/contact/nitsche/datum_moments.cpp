@@ -12,7 +12,6 @@
 #include "tribound/base/error.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
-#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {

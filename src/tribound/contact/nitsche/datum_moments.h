@@ -17,6 +17,7 @@
 #include "tribound/contact/nitsche/simplex_map.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/simplex_parts.h"
+#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {
