@@ -1,5 +1,7 @@
 #include "app/page/report_page.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
