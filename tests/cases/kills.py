@@ -204,6 +204,8 @@ def scenario(name, case, before, arguments, ranks=1, stride=1):
         for place, out in left_by_kills(folder, arguments, ranks, stride):
             places += place is not None
             problems += [f"{name}, killed at change {place}: {text}" for text in contradictions(out, references)]
+        if not places:
+            problems.append(f"{name}: no place was found")
         files = [{str(path.relative_to(top)) for path in top.rglob("*")} for top in (references[-1], folder / "out")]
         if files[0] != files[1]:
             problems.append(f"{name}: {files[0] ^ files[1]} differ from a run that was not killed")

@@ -16,12 +16,6 @@ namespace tribound::problem
 namespace
 {
 
-/// A field in words: its value where it is constant.
-std::string text(const Field& field, const std::string& unit)
-{
-  return field.is_constant() ? fmt::format("{:.6g}{}", field.constant(), unit) : "varies";
-}
-
 template <FrictionLaw L>
 ContactLaw make(std::span<const Field> values)
 {
@@ -75,7 +69,7 @@ std::string Frictionless::words(const Units& /*units*/) const
 
 std::string Tresca::words(const Units& units) const
 {
-  return "Tresca friction, threshold " + text(threshold, units.behind(UnitOf::stress));
+  return "Tresca friction, threshold " + problem::words(threshold, units.behind(UnitOf::stress));
 }
 
 std::string Tied::words(const Units& /*units*/) const
@@ -99,7 +93,7 @@ std::string JointLaw::words(const Units& units) const
   if (cohesion > 0 && std::isfinite(slip_length))
     text += fmt::format(", lost on a slip of {:.6g}{}", slip_length, units.behind(UnitOf::length));
   if (coefficient > 0) text += fmt::format(", friction coefficient {:.6g}", coefficient);
-  if (!threshold.is_zero()) text += ", threshold " + problem::text(threshold, stress);
+  if (!threshold.is_zero()) text += ", threshold " + problem::words(threshold, stress);
   return text + (stick ? ", no slip before it breaks" : "");
 }
 

@@ -149,4 +149,9 @@ void Field::fail(double value, std::span<const double> x) const
                                : "keep it finite, such as 1/max(x, 1e-12) for 1/x");
 }
 
+std::string words(const Field& field, const std::string& unit)
+{
+  return field.is_constant() ? fmt::format("{:.6g}{}", field.constant(), unit) : "varies";
+}
+
 }  // namespace tribound::problem

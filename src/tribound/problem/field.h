@@ -118,4 +118,7 @@ class Field
   std::string name_;  ///< for messages; empty: the formula itself
 };
 
+/// The value of a constant, followed by `unit`; "varies" otherwise.
+[[nodiscard]] std::string words(const Field& field, const std::string& unit = {});
+
 }  // namespace tribound::problem

@@ -23,12 +23,6 @@ using problem::UnitOf;
 namespace
 {
 
-/// A field in words: its value with its unit where it is constant, else "varies".
-std::string text(const problem::Field& field, const std::string& unit = {})
-{
-  return field.is_constant() ? fmt::format("{:.6g}{}", field.constant(), unit) : "varies";
-}
-
 template <int dim>
 std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                       const problem::Units& units)
@@ -65,11 +59,12 @@ template <int dim>
 std::string pair_words(const problem::Problem<dim>& problem, int tag, const problem::Units& units)
 {
   if (const problem::ContactPair<dim>* pair = problem.pair_of_slave(tag))
-    return fmt::format(
-        "contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "),
-        problem::words(pair->contact.law, units),
-        pair->contact.gap ? text(*pair->contact.gap, units.behind(UnitOf::length, dim)) : "of the meshes",
-        geometry_words(pair->contact));
+    return fmt::format("contact with {}, {}, gap {}{}", fmt::join(pair->master, ", "),
+                       problem::words(pair->contact.law, units),
+                       pair->contact.gap
+                           ? problem::words(*pair->contact.gap, units.behind(UnitOf::length, dim))
+                           : "of the meshes",
+                       geometry_words(pair->contact));
   if (const problem::ContactPair<dim>* pair = problem.pair_of_master(tag))
     return fmt::format("contact with {}, whose master it is", fmt::join(pair->slave, ", "));
   return {};
@@ -134,14 +129,15 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
   };
   if (condition.fixes_any())
     add("displacement " +
-        vector([&](int i) { return condition.fixes(i) ? text(*condition.displacement[i]) : "free"; }) +
+        vector([&](int i)
+               { return condition.fixes(i) ? problem::words(*condition.displacement[i]) : "free"; }) +
         length);
   if (std::ranges::any_of(condition.traction, [](const problem::Field& t) { return !t.is_zero(); }))
-    add("traction " + vector([&](int i) { return text(condition.traction[i]); }) + stress);
-  if (condition.pressure) add("pressure " + text(*condition.pressure, stress));
+    add("traction " + vector([&](int i) { return problem::words(condition.traction[i]); }) + stress);
+  if (condition.pressure) add("pressure " + problem::words(*condition.pressure, stress));
   if (condition.contact)
     add("contact, " + problem::words(condition.contact->law, units) + ", gap " +
-        text(*condition.contact->gap, length) + geometry_words(*condition.contact));
+        problem::words(*condition.contact->gap, length) + geometry_words(*condition.contact));
   return words.empty() ? "traction-free" : words;
 }
 
