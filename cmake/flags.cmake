@@ -20,6 +20,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
 endif()
 if(CMAKE_UNITY_BUILD)
   target_compile_options(tribound_flags INTERFACE -Wno-subobject-linkage) # unnamed namespaces in what GCC takes for headers
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    math(EXPR instructions "10000 * ${CMAKE_UNITY_BUILD_BATCH_SIZE}") # GCC's limit for one file: beyond, it inlines less
+    target_compile_options(tribound_flags INTERFACE $<$<CONFIG:Release>:--param=large-unit-insns=${instructions}>)
+  endif()
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # GCC collects garbage from 128 MB on, which takes an eighth of its time; no file needs more than 2 GB without.
