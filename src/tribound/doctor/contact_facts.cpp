@@ -53,7 +53,7 @@ class Collector
   void add_segment(std::size_t k)
   {
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
-    if (k == 0 || form_.segments()[k - 1].slave.number != segment.slave.number) ++facts_.facets;
+    if (is_first_of_facet(form_, static_cast<int>(k))) ++facts_.facets;
     facts_.measure += segment.measure;
     if (!segment.contact->true_surface) is_without_shape_ = true;
     mean_ += segment.measure * contact::normal_at_centre(form_.space().mesh(), segment);
@@ -148,6 +148,7 @@ std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<di
   std::vector<std::array<int, 2>> neighbours;
   for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
   {
+    if (!is_first_of_facet(form, k)) continue;
     const mesh::BoundaryFacet& facet = form.segments()[k].slave.facet;
     const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     for (int left_out = 0; left_out < dim; ++left_out)

@@ -46,8 +46,15 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheForm<dim>& form);
 
-/// Pairs of segments of one boundary whose facets share a vertex (2D) or an edge (3D), by their indices in
-/// the form.
+/// Whether segment k is the first of its slave facet, whose segments come one after another.
+template <int dim>
+[[nodiscard]] bool is_first_of_facet(const contact::NitscheForm<dim>& form, int k)
+{
+  return k == 0 || form.segments()[k - 1].slave.number != form.segments()[k].slave.number;
+}
+
+/// Pairs of facets of one boundary that share a vertex (2D) or an edge (3D), by the indices of their first
+/// segments in the form.
 template <int dim>
 [[nodiscard]] std::vector<std::array<int, 2>> contact_neighbours(const contact::NitscheForm<dim>& form);
 

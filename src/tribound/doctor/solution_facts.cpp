@@ -61,6 +61,20 @@ FacetOutcome<dim> add_facet(std::span<const contact::ContactPoint<dim>> points, 
   return facet;
 }
 
+/// Adds the outcome on another segment of the facet.
+template <int dim>
+void join(FacetOutcome<dim>& facet, const FacetOutcome<dim>& part)
+{
+  const double share = part.measure / (facet.measure + part.measure);
+  facet.measure += part.measure;
+  facet.centre += share * (part.centre - facet.centre);
+  facet.pressure += share * (part.pressure - facet.pressure);
+  facet.closed = facet.closed && part.closed;
+  if (part.largest_pressure <= facet.largest_pressure) return;
+  facet.largest_pressure = part.largest_pressure;
+  facet.largest_pressure_at = part.largest_pressure_at;
+}
+
 /// d_F of ContactOutcome::zigzag.
 template <int dim>
 double deviation(std::span<const FacetOutcome<dim>> facets, int k, const std::vector<int>& neighbours)
@@ -157,8 +171,9 @@ template <int dim>
 std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   std::map<int, ContactOutcome> outcomes;  // by boundary
-  std::vector<FacetOutcome<dim>> facets;
-  facets.reserve(form.segments().size());
+  std::vector<FacetOutcome<dim>> facets(form.segments().size(),
+                                        FacetOutcome<dim>{.closed = false});  // of first segments
+  int first = 0;
   std::vector<SegmentStates<dim>> states;
   states.reserve(form.segments().size());
   for (int k = 0; k < static_cast<int>(form.segments().size()); ++k)
@@ -171,7 +186,12 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
     outcome.has_friction = friction.resists_sliding() && !friction.is_bonded;
     if (friction.coefficient > 0) outcome.coefficient = friction.coefficient;
     states.push_back(form.contact_states(u, k));
-    facets.push_back(add_facet<dim>(form.contact_points(k), segment.measure, states.back(), outcome));
+    const FacetOutcome<dim> part =
+        add_facet<dim>(form.contact_points(k), segment.measure, states.back(), outcome);
+    if (is_first_of_facet(form, k))
+      facets[first = k] = part;
+    else
+      join(facets[first], part);
   }
   const std::vector<std::array<int, 2>> pairs = contact_neighbours(form);
   add_zigzag<dim>(form, facets, pairs, outcomes);
