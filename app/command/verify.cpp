@@ -86,8 +86,7 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
   iterate.bound_plain = eta.total;
   iterate.dual_norm = dual_norm(newton.u());
   iterate.norms = contact::stress_norms<dim>(form.problem(), form.space(), newton.u());
-  iterate.identities =
-      certify::check_identities<dim>(form, newton.traction, stress).largest(form.space().degree());
+  iterate.identities = certify::check_identities<dim>(form, newton.traction, stress).largest();
   return iterate;
 }
 
@@ -108,8 +107,8 @@ solve::NewtonResult<dim> verify_iterates(const contact::NitscheForm<dim>& form, 
   const solve::NewtonObserver<dim> observer =
       [&](const solve::NewtonIterate<dim>& iterate) -> solve::NewtonAdvice
   {
-    const certify::Stress<dim> stress =
-        certify::equilibrate<dim>(form, iterate.u(), iterate.traction, 0, iterate.step.delta);
+    const certify::Stress<dim> stress = certify::equilibrate<dim>(form, iterate.u(), iterate.traction, 0,
+                                                                  iterate.step.delta, config.method.stress);
     const certify::Estimate eta = estimator(iterate.u(), stress);
     result.iterates.push_back(verified_iterate(form, iterate, stress, eta, dual_norm));
     if (!quantities.empty())

@@ -166,7 +166,7 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
   {
     width = std::max(width, label(row).size());
     force = largest(row.force, force);
-    if (row.moment) moment = largest(*row.moment, moment);
+    moment = largest(row.moment, moment);
   }
   std::string head;
   for (std::size_t i = 0; i < dim; ++i) head += fmt::format("{:>13}", fmt::format("force {}", axes[i]));
@@ -177,10 +177,7 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
   {
     std::string numbers;
     for (const double value : row.force) numbers += cell(value, force);
-    if (row.moment)
-      for (const double value : *row.moment) numbers += cell(value, moment);
-    else
-      for (std::size_t i = 0; i < (dim == 2 ? 1 : dim); ++i) numbers += fmt::format("{:>13}", "-");
+    for (const double value : row.moment) numbers += cell(value, moment);
     text += line("", fmt::format("{:<10}{:<{}}{}", certify::to_string(row.kind), label(row), width, numbers));
   }
   const problem::Units& units = facts.units;
@@ -189,9 +186,8 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
       units.are_named() ? fmt::format("forces in {}, moments in {} ", units.label(UnitOf::force, d),
                                       units.label(UnitOf::moment, d))
                         : "moments ";
-  text += line("", fmt::format("on the body; {}about ({:.6g})", in_units, fmt::join(balance.about, ", ")));
-  const std::string note = certify::moment_note(balance);
-  return note.empty() ? text : text + line("", note);
+  return text +
+         line("", fmt::format("on the body; {}about ({:.6g})", in_units, fmt::join(balance.about, ", ")));
 }
 
 std::string certificate_text(const io::RunRecord& run)
@@ -210,9 +206,8 @@ std::string certificate_text(const io::RunRecord& run)
                                 bound.total));
   text += component_lines(bound.global, io::run_kind(level));
   if (level.identities)
-    text +=
-        line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
-                                       level.identities->largest(run.facts.degree), certify::identity_limit));
+    text += line("identities", fmt::format("hold to {:.1e} of ||sigma_h|| (limit {:g})",
+                                           level.identities->largest(), certify::identity_limit));
   text += energy_lines(level, run.facts);
   for (const std::string& covered : run.statements.covered) text += paragraph("guaranteed", covered);
   text += paragraph("law", run.statements.law);

@@ -285,6 +285,7 @@ io::Json study_object(const Study& study)
                   {"file", study.facts.file},
                   {"d", study.facts.dimension},
                   {"p", study.facts.degree},
+                  {"stress", certify::to_string(study.facts.stress)},
                   {"friction", study.facts.friction},
                   {"units", io::units_json(study.facts)},
                   {"gamma_lin", study.gamma_lin},

@@ -218,6 +218,7 @@ std::string verification_json(const Verification& v)
       {"file", v.facts.file},
       {"d", v.facts.dimension},
       {"p", v.facts.degree},
+      {"stress", certify::to_string(v.facts.stress)},
       {"friction", v.facts.friction},
       {"gamma0", v.facts.gamma0},
       {"units", io::units_json(v.facts)},

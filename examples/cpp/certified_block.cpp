@@ -56,7 +56,7 @@ bool certify_on_one_mesh(const adapt::Method& method, const mesh::Mesh<2>& mesh,
   const certify::IdentityDefects identities = certify::check_identities<2>(form, newton.traction, stress);
   const certify::Estimate eta = certify::estimate(form, newton.u, stress);
   const contact::StressNorms norms = contact::stress_norms(problem, space, newton.u);
-  const certify::Verdict verdict = certify::judge(eta, identities, method.degree, norms, 0.01);
+  const certify::Verdict verdict = certify::judge(eta, identities, norms, 0.01);
 
   std::printf("one mesh: %zu Newton steps, bound %.4g, that is %.3g %% of ||sigma(u_h)||: %s\n",
               newton.steps.size(), eta.total_sharp, 100 * eta.total_sharp / norms.sigma,

@@ -18,7 +18,7 @@ export function definitions(pairs) {
 
 export function guaranteeSection(run) {
   const identities = run.identities && Object.entries(run.identities)
-    .filter(([name, value]) => value !== null && (name !== "symmetry" || run.p > 1)) // degree 1 has no such identity
+    .filter(([, value]) => value !== null) // no symmetry row by row, nor for degree 1
     .map(([name, value]) => [name, number(value, 2)]);
   return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
     element("div", { class: "two-columns" },
@@ -45,21 +45,19 @@ function caseText(effective) {
 function balanceTable(balance, d) {
   if (!balance?.rows?.length) return null;
   const [forces, moments] = [unit("force"), unit("moment")];
-  const scale = (key) => balance.rows.flatMap((row) => row[key] ?? []).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
+  const scale = (key) => balance.rows.flatMap((row) => row[key]).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
   const [largestForce, largestMoment] = [scale("force"), scale("moment")];
-  const cells = (values, n, largest) => (values ? withoutNoise([values].flat(), largest).map((value) => number(value, 6)) : Array(n).fill("\u2013"));
+  const cells = (values, largest) => withoutNoise([values].flat(), largest).map((value) => number(value, 6));
   const axes = ["x", "y", "z"].slice(0, d);
-  const nMoments = d === 2 ? 1 : 3;
   const rows = balance.rows.map(({ kind, name, source, force, moment }) => {
-    const cellsOfRow = [kind, name ?? "", source ?? "", ...cells(force, d, largestForce), ...cells(moment, nMoments, largestMoment)];
+    const cellsOfRow = [kind, name ?? "", source ?? "", ...cells(force, largestForce), ...cells(moment, largestMoment)];
     cellsOfRow.class = kind === "sum" ? "accepted group" : null;
     return cellsOfRow;
   });
   const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
   return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
     table(["", "where", "by", ...axes.map((axis) => headed(`#force ${axis}`, forces)),
-      ...(d === 2 ? [headed("#moment", moments)] : axes.map((axis) => headed(`#moment ${axis}`, moments)))], rows, { class: "balance" }),
-    balance.note ? element("p", { class: "note" }, balance.note) : null];
+      ...(d === 2 ? [headed("#moment", moments)] : axes.map((axis) => headed(`#moment ${axis}`, moments)))], rows, { class: "balance" })];
 }
 
 /** The units of the numbers. */

@@ -91,11 +91,10 @@ def judge_arithmetic(verdict, certificate):
     verdict.check(consistent, f"bound {bound}, sigma_norm {sigma}: {status!r}")
     if certificate["relative"] is not None and sigma > 0:
         verdict.check(near(certificate["relative"], bound / sigma), "relative is not bound / sigma_norm")
-    # Stresses of degree 1 are symmetric only up to a term of the size of the error: their symmetry is not checked.
     if certificate["identities"] is None:
         judge_zero_stress(verdict, certificate)
         return
-    defects = [x for name, x in certificate["identities"].items() if name != "symmetry" or certificate["p"] > 1]
+    defects = [x for name, x in certificate["identities"].items() if name != "symmetry" or certificate["stress"] == "afw" and certificate["p"] > 1]
     limit = certificate["constants"]["identity_limit"]
     verdict.check(all(x is not None and 0 <= x <= limit for x in defects), f"identities {certificate['identities']}")
     verdict.check(bound <= certificate["bound_plain"] * (1 + 1e-12), "bound above bound_plain")

@@ -198,6 +198,8 @@ def random_keys(dice, degree):
             keys["solver"]["tolerance"] = dice.power(-13, -9)
     if dice.chance(0.03):
         keys["certify"] = {"contact_rule": "reference"}
+    if dice.chance(0.5):
+        keys.setdefault("certify", {})["stress"] = "afw"
     return keys
 
 

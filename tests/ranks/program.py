@@ -100,7 +100,9 @@ def the_same_as_one(name, *arguments):
         certificates = [json.loads((out(name, k) / "certificate.json").read_text()) for k in (1, n)]
         for key in ("status", "reason", "warnings", "contact", "bodies", "balance", "mesh", "constants"):
             pair = [certificate.get(key) for certificate in certificates]
-            expect(f"{name} {n} {key}", alike(*pair), *pair)
+            # A moment that vanishes is rounding of forces times their arms.
+            zero = max(1e-9, 1e-12 * largest(pair[0]) * largest(pair[0]["about"])) if key == "balance" else None
+            expect(f"{name} {n} {key}", alike(*pair, zero), *pair)
         lines = [sorted(len(row) for row in csv.reader(open(out(name, k) / "contact.csv"))) for k in (1, n)]
         expect(f"{name} {n}", lines[0] == lines[1], "contact.csv", len(lines[0]), len(lines[1]))
 

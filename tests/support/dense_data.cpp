@@ -143,8 +143,9 @@ std::vector<DenseFacet<dim>> dense_facets(const contact::NitscheForm<dim>& form,
 
 template <int dim>
 DenseData<dim>::DenseData(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                          std::span<const Point<dim>> t, Mutation mistake)
+                          std::span<const Point<dim>> t, certify::PatchStress patches, Mutation mistake)
     : mesh(form.space().mesh()),
+      by_rows(patches == certify::PatchStress::rows),
       mutation(mistake),
       p(form.space().degree()),
       n(fem::polynomial_dimension(dim, p)),

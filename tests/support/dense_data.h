@@ -93,9 +93,10 @@ template <int dim>
 struct DenseData
 {
   DenseData(const contact::NitscheForm<dim>& form, std::span<const double> u, std::span<const Point<dim>> t,
-            Mutation mutation);
+            certify::PatchStress patches, Mutation mutation);
 
   const mesh::Mesh<dim>& mesh;
+  bool by_rows;  ///< no symmetry, constant y_a
   Mutation mutation;
   int p;
   int n;  ///< dim P^p(T)

@@ -146,7 +146,7 @@ MatrixXd solve(const DenseData<dim>& given, const DensePatch<dim>& patch)
       (patch.facets.size() + patch.outer.size()) * dim * fem::polynomial_dimension(dim - 1, given.p);
   System system{MatrixXd::Zero(n_rows, goal.rows()), MatrixXd::Zero(n_rows, 2)};
   add_divergence(given, patch, system);
-  add_symmetry(given, patch, system);
+  if (!given.by_rows) add_symmetry(given, patch, system);
   add_facets(given, patch, system);
   MatrixXd rows = system.rows.topRows(system.n);
   MatrixXd rhs = system.rhs.topRows(system.n);
@@ -163,12 +163,14 @@ MatrixXd solve(const DenseData<dim>& given, const DensePatch<dim>& patch)
 
 template <int dim>
 certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                       std::span<const Point<dim>> t, Mutation mutation)
+                                       std::span<const Point<dim>> t, certify::PatchStress patches,
+                                       Mutation mutation)
 {
-  const DenseData<dim> given(form, u, t, mutation);
+  const DenseData<dim> given(form, u, t, patches, mutation);
   certify::Stress<dim> stress;
   stress.degree = given.p;
   stress.n = given.n;
+  stress.patches = patches;
   stress.dis.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   stress.lin.assign(given.mesh.n_cells() * stress.block_size(), 0.0);
   for (Index c = 0; c < given.mesh.n_cells(); ++c) stress.lin_block.push_back(c);
@@ -194,8 +196,8 @@ certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form, st
 }
 
 template certify::Stress<2> dense_equilibrate(const contact::NitscheForm<2>&, std::span<const double>,
-                                              std::span<const Point<2>>, Mutation);
+                                              std::span<const Point<2>>, certify::PatchStress, Mutation);
 template certify::Stress<3> dense_equilibrate(const contact::NitscheForm<3>&, std::span<const double>,
-                                              std::span<const Point<3>>, Mutation);
+                                              std::span<const Point<3>>, certify::PatchStress, Mutation);
 
 }  // namespace tribound::test

@@ -26,11 +26,13 @@ enum class Mutation
   no_lin               ///< sigma_lin = 0
 };
 
-/// sigma_dis and sigma_lin of the iterate u^k with running traction t^k, method section 4. The integrals are
-/// those of the form: the same rules in the same order of the vertices.
+/// sigma_dis and sigma_lin of the iterate u^k with running traction t^k, method section 4; `patches`: rows
+/// (section 4.6) or afw. The integrals are those of the form: the same rules in the same order of the
+/// vertices.
 template <int dim>
 [[nodiscard]] certify::Stress<dim> dense_equilibrate(const contact::NitscheForm<dim>& form,
                                                      std::span<const double> u, std::span<const Point<dim>> t,
+                                                     certify::PatchStress patches,
                                                      Mutation mutation = Mutation::none);
 
 }  // namespace tribound::test

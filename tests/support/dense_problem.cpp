@@ -42,10 +42,12 @@ std::vector<Motion<dim>> free_translations(const DenseData<dim>& given, const De
 }
 
 /// The rotations about the vertex that are admissible or almost so: with fixed components below 0.35 of their
-/// values, in the mean square over the vertices of the Dirichlet facets. A basis orthogonal in both.
+/// values, in the mean square over the vertices of the Dirichlet facets. A basis orthogonal in both. None row
+/// by row: no rotation balances there.
 template <int dim>
 std::vector<Motion<dim>> hardly_stopped(const DenseData<dim>& given, const DensePatch<dim>& patch)
 {
+  if (given.by_rows) return {};
   const std::vector<Motion<dim>> all = rotations_about<dim>(given.mesh.vertex(patch.vertex));
   const auto n = static_cast<Eigen::Index>(all.size());
   MatrixXd values = MatrixXd::Zero(n, n);

@@ -74,7 +74,7 @@ TEST(Finish, ForcesAreThoseOfTheDiscreteSolution)
   EXPECT_GT(late.levels.back().finishing_steps, 0);
   EXPECT_NEAR(late.levels.back().estimate.total_sharp, early.levels.back().estimate.total_sharp,
               0.01 * early.levels.back().estimate.total_sharp);
-  EXPECT_LE(late.levels.back().identities.largest(1), 1e-10);
+  EXPECT_LE(late.levels.back().identities.largest(), 1e-10);
 }
 
 /// The limit is noticed once the next mesh exists: the level is reported again.
@@ -108,7 +108,7 @@ TEST(Finish, OnTheLastMeshOfAllOneIterateIsBounded)
                 static_cast<int>(early.levels.back().steps.size()), 1);
     const double bound = early.levels.back().estimate.total_sharp;
     EXPECT_NEAR(last.estimate.total_sharp, bound, 0.02 * bound);
-    EXPECT_LE(last.identities.largest(p), 1e-10);
+    EXPECT_LE(last.identities.largest(), 1e-10);
   }
 }
 
@@ -143,7 +143,7 @@ TEST(Finish, WhatALooseSolverLeavesIsInTheBound)
   EXPECT_EQ(told.verdict.status, certify::RunStatus::certified) << told.verdict.reason;
   EXPECT_FALSE(told.levels.back().tightened);
   EXPECT_GT(told.levels.back().estimate.global.alg, 1e-7 * told.levels.back().estimate.total_sharp);
-  EXPECT_LE(told.levels.back().identities.largest(1), 1e-12);
+  EXPECT_LE(told.levels.back().identities.largest(), 1e-12);
 }
 
 TEST(Finish, SystemsAreSolvedAnewWhereTheyLeaveALargePartOfTheBound)

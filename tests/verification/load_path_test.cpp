@@ -218,6 +218,7 @@ TEST(LoadPath, NumbersOfAnIndependentProgram)
       Path path({c["cells"][0], c["cells"][1]}, c["degree"]);
       path.E = 1;
       path.nu = 0.3;
+      path.method.stress = certify::PatchStress::afw;
       path.boundaries.push_back(problem::with_contact<2>("bottom", law_of(c["law"])));
       if (name.starts_with("water"))
         path.boundaries.back().contact->water.emplace(formula("0.01*abs(t)*x/2"));

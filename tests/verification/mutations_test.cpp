@@ -108,10 +108,14 @@ void expect_agreement(const std::string& name, const problem::Contact& contact, 
   for (const int k : {1, 2, 30})
   {
     const solve::NewtonResult<dim> result = iterate(c, k);
-    const double d = difference(certify::equilibrate<dim>(c.form, result.u, result.traction),
-                                dense_equilibrate<dim>(c.form, result.u, result.traction));
-    fmt::print("{}, {}D, p = {}, iterate {}: difference {:.1e}\n", name, dim, p, k, d);
-    EXPECT_LE(d, 1e-10) << "iterate " << k;
+    for (const certify::PatchStress patches : {certify::PatchStress::rows, certify::PatchStress::afw})
+    {
+      const double d = difference(certify::equilibrate<dim>(c.form, result.u, result.traction, 0, 0, patches),
+                                  dense_equilibrate<dim>(c.form, result.u, result.traction, patches));
+      fmt::print("{}, {}D, p = {}, iterate {}, {}: difference {:.1e}\n", name, dim, p, k,
+                 certify::to_string(patches), d);
+      EXPECT_LE(d, 1e-10) << "iterate " << k << ", " << certify::to_string(patches);
+    }
   }
 }
 
@@ -150,7 +154,8 @@ double distance_from_reference(int p, int k, Mutation mutation)
     DiscreteProblem<2> c = t2d(p, expected["nx"], expected["ny"]);
     const solve::NewtonResult<2> result = iterate(c, k);
     const certify::Estimate eta = certify::estimate<2>(
-        c.form, result.u, dense_equilibrate<2>(c.form, result.u, result.traction, mutation),
+        c.form, result.u,
+        dense_equilibrate<2>(c.form, result.u, result.traction, certify::PatchStress::afw, mutation),
         certify::ContactRule::reference);
     const nlohmann::json& e = expected[fmt::format("iterate{}_est", k)];
     const double total = e["eta_tot"];
@@ -209,7 +214,7 @@ class Mutations : public ::testing::TestWithParam<int>
 };
 
 template <int dim>
-void expect_noticed(int p)
+void expect_noticed(int p, certify::PatchStress patches)
 {
   DiscreteProblem<dim> c(some_block<dim>(), rolling_block<dim>(tresca), t2d_method(p));
   const solve::NewtonResult<dim> result = iterate(c, 2);
@@ -217,11 +222,12 @@ void expect_noticed(int p)
   const auto defects = [&](Mutation mutation)
   {
     return certify::check_identities<dim>(
-        c.form, result.traction, dense_equilibrate<dim>(c.form, result.u, result.traction, mutation));
+        c.form, result.traction,
+        dense_equilibrate<dim>(c.form, result.u, result.traction, patches, mutation));
   };
   const certify::IdentityDefects right = defects(Mutation::none);
-  fmt::print("{}D, p = {}\n{:<20} {}\n", dim, p, "none", summary(right));
-  EXPECT_LE(right.largest(p), 1e-11);
+  fmt::print("{}D, p = {}, {}\n{:<20} {}\n", dim, p, certify::to_string(patches), "none", summary(right));
+  EXPECT_LE(right.largest(), 1e-11);
   for (const auto& [mutation, name, identity, components] : mistakes)
   {
     const certify::IdentityDefects wrong = defects(mutation);
@@ -233,19 +239,21 @@ void expect_noticed(int p)
     else
     {
       EXPECT_TRUE(components) << name;
-      EXPECT_LE(wrong.largest(p), 1e-11) << name;
+      EXPECT_LE(wrong.largest(), 1e-11) << name;
     }
   }
 }
 
 TEST_P(Mutations, AreNoticedIn2D)
 {
-  expect_noticed<2>(GetParam());
+  expect_noticed<2>(GetParam(), certify::PatchStress::rows);
+  expect_noticed<2>(GetParam(), certify::PatchStress::afw);
 }
 
 TEST(Mutations3D, AreNoticed)
 {
-  expect_noticed<3>(1);
+  expect_noticed<3>(1, certify::PatchStress::rows);
+  expect_noticed<3>(1, certify::PatchStress::afw);
 }
 
 TEST(MutationsT2D, ChangeTheComponents)

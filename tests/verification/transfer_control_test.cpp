@@ -75,10 +75,10 @@ TEST(Transfer, APeakIsThatOfAFineMesh)
   const adapt::PathEnd fine = adapt::follow<2>(on_fine, program, {}, {});
   ASSERT_TRUE(fine.peak);
 
-  adapt::LoadPath<2> path(problem, method, {.tolerance = 0.06}, mesh::Mesh<2>(peeled_mesh<2>(false)));
+  adapt::LoadPath<2> path(problem, method, {.tolerance = 0.05}, mesh::Mesh<2>(peeled_mesh<2>(false)));
   adapt::PathEnd end;
   const certify::Verdict verdict =
-      adapt::transfer<2>(path, program, adapt::make_strategy<2>({.tolerance = 0.06, .max_levels = 12}),
+      adapt::transfer<2>(path, program, adapt::make_strategy<2>({.tolerance = 0.05, .max_levels = 12}),
                          {.path_end = [&](const adapt::PathEnd& e) { end = e; }});
   EXPECT_EQ(end.failure, "");
   EXPECT_TRUE(certify::is_bound(verdict.status)) << verdict.reason;

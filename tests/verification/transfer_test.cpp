@@ -154,13 +154,14 @@ TEST(Transfer, OtherPathsDifferByLessThanTheirBounds)
 
 TEST(Transfer, RefinesUntilEveryStepHasTheTolerance)
 {
+  constexpr double tolerance = 0.03;
   for (const bool pairs : {false, true})
   {
-    Peeled<2> run(bonded_laws()[3], pairs, 2, {.tolerance = 0.04});
+    Peeled<2> run(bonded_laws()[3], pairs, 2, {.tolerance = tolerance});
     const Followed path = followed<2>(run, through({path_of_t.begin(), path_of_t.end()}),
-                                      adapt::make_strategy<2>({.tolerance = 0.04}));
+                                      adapt::make_strategy<2>({.tolerance = tolerance}));
     EXPECT_EQ(path.verdict.status, certify::RunStatus::certified) << path.verdict.reason;
-    EXPECT_THAT(path.bound, testing::Each(testing::Le(0.04)));
+    EXPECT_THAT(path.bound, testing::Each(testing::Le(tolerance)));
     EXPECT_THAT(path.t, testing::ElementsAreArray(path_of_t));
     EXPECT_TRUE(std::ranges::is_sorted(path.cells));
     EXPECT_GT(path.cells.back(), path.cells.front());  // some of it along the path

@@ -41,7 +41,7 @@ class Certifier
       : form_(form),
         method_(method),
         known_(expected),
-        equilibrator_(form),
+        equilibrator_(form, method.stress),
         estimator_(form, method.contact_rule, friedrichs)
   {
   }
@@ -71,7 +71,7 @@ class Certifier
     const std::optional<double> eta = known_    ? known_
                                       : stress_ ? std::optional(of_stress * *stress_)
                                                 : std::nullopt;
-    return eta && estimator_.algebraic_bound(residual) <= method_.solver.gamma_alg * *eta;
+    return eta && estimator_.algebraic_bound(residual, method_.stress) <= method_.solver.gamma_alg * *eta;
   }
   /// Whether alg is a small enough part of the level's bound; 1 % is allowed for systems solved to a
   /// tolerance.
@@ -84,7 +84,7 @@ class Certifier
   [[nodiscard]] certify::IdentityDefects identities(const CertifiedLevel<dim>& level) const
   {
     return certify::check_identities<dim>(form_, level.traction, level.stress,
-                                          estimator_.algebraic_remainder(level.u, level.traction));
+                                          estimator_.algebraic_remainder(level.u, level.stress));
   }
 
   /// The stress of the iterate and its bound.

@@ -31,7 +31,7 @@ certify::Verdict LoadPath<dim>::judge(const CertifiedLevel<dim>& level) const
     for (double* defect : {&identities.divergence, &identities.jump, &identities.neumann, &identities.contact,
                            &identities.symmetry})
       *defect *= share;
-  return certify::judge(level.estimate, identities, method_.degree, norms, options_.tolerance);
+  return certify::judge(level.estimate, identities, norms, options_.tolerance);
 }
 
 template <int dim>

@@ -117,6 +117,7 @@ std::optional<Excerpt<dim>> gathered(const LevelView<dim>& view, const Method& m
           level.estimate.cells[picked.number[k]] = fields.components[k];
         level.stress.degree = view.level.stress.degree;
         level.stress.n = view.level.stress.n;
+        level.stress.patches = view.level.stress.patches;
         level.stress.dis = in_order(fields.stress, level.stress.block_size(), picked.number);
         level.stress.lin_block.assign(fields.cells.size(), -1);
         return result;

@@ -109,10 +109,10 @@ void tighten(const contact::NitscheForm<dim>& form, const Method& method, const 
 }  // namespace
 
 template <int dim>
-bool bound_holds(const CertifiedLevel<dim>& level, int degree)
+bool bound_holds(const CertifiedLevel<dim>& level)
 {
   if (!level.solved()) return false;
-  const certify::Verdict verdict = certify::judge(level.estimate, level.identities, degree, level.norms, 0);
+  const certify::Verdict verdict = certify::judge(level.estimate, level.identities, level.norms, 0);
   return verdict.status != certify::RunStatus::not_certified;
 }
 
@@ -146,7 +146,7 @@ std::optional<CertifiedLevel<dim>> converge(const contact::NitscheForm<dim>& for
     Certifier<dim> certifier(form, method, {}, level.friedrichs);
     keep_last(certifier, result);
   }
-  if (!bound_holds(result, method.degree)) return std::nullopt;
+  if (!bound_holds(result)) return std::nullopt;
   return result;
 }
 
@@ -242,7 +242,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   if (method.stopping.criterion == Stopping::last_bounded)
     level.finishing_steps = steps_beyond_need(level.steps, level.estimate.global, method.stopping.gamma_lin);
   const bool is_loose = !certifier->is_balanced(level) && !certify::is_round_off(level.estimate, level.norms);
-  if (is_loose || !bound_holds(level, method.degree)) tighten(form, method, observer, level);
+  if (is_loose || !bound_holds(level)) tighten(form, method, observer, level);
   return level;
 }
 
@@ -293,7 +293,7 @@ template std::optional<CertifiedLevel<3>> converge(const contact::NitscheForm<3>
                                                    const Method&, const StepObserver&);
 template void certify_again(const contact::NitscheForm<2>&, const Method&, CertifiedLevel<2>&);
 template void certify_again(const contact::NitscheForm<3>&, const Method&, CertifiedLevel<3>&);
-template bool bound_holds(const CertifiedLevel<2>&, int);
-template bool bound_holds(const CertifiedLevel<3>&, int);
+template bool bound_holds(const CertifiedLevel<2>&);
+template bool bound_holds(const CertifiedLevel<3>&);
 
 }  // namespace tribound::adapt

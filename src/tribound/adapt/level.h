@@ -188,6 +188,6 @@ template <int dim>
 
 /// Whether there is a solution and judge() accepts its bound.
 template <int dim>
-[[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level, int degree);
+[[nodiscard]] bool bound_holds(const CertifiedLevel<dim>& level);
 
 }  // namespace tribound::adapt

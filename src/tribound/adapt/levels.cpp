@@ -128,7 +128,7 @@ std::optional<CertifiedLevel<dim>> Levels<dim>::solve_to_the_end(const StepObser
   {
     CertifiedLevel<dim> level = solve_and_certify<dim>(current_->form, start_, method, observer, level_.delta,
                                                        expected_, level_.friedrichs);
-    if (level.converged && bound_holds(level, method_.degree)) return level;
+    if (level.converged && bound_holds(level)) return level;
   }
   catch (const SolveError& error)  // the criterion may accept an earlier iterate
   {
@@ -178,8 +178,7 @@ template <int dim>
 certify::Verdict Levels<dim>::judge(const CertifiedLevel<dim>& level) const
 {
   if (!level.solved()) return {certify::RunStatus::failed, level.failure};
-  certify::Verdict verdict =
-      certify::judge(level.estimate, level.identities, method_.degree, level.norms, tolerance_);
+  certify::Verdict verdict = certify::judge(level.estimate, level.identities, level.norms, tolerance_);
   if (level.tightened && !certify::is_bound(verdict.status))
     verdict.reason +=
         "; solving the systems again to rounding accuracy (solver.tolerance = 0) did not help: check for "

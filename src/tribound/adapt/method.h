@@ -8,6 +8,7 @@
 #include "tribound/adapt/regularisation.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/certify/bound/contact_terms.h"
+#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/solve/newton.h"
 
@@ -39,6 +40,7 @@ struct Method
   std::optional<RegularisationOptions> regularisation{};  ///< the plain method where absent
   algebra::SolverOptions solver{};
   certify::ContactRule contact_rule = certify::ContactRule::resolved;
+  certify::PatchStress stress = certify::PatchStress::rows;  ///< of the bound of the residual
 
   /// With newton.damping: the number of full steps tried before Newton's method restarts with damped ones.
   /// Where a front moves, full steps need half as many; where bodies are pressed shut or slide back, they may

@@ -90,6 +90,7 @@ const Options<Config>& certify_options()
   static const Options<Config> options(
       "certify",
       {option<&Config::method, &Method::contact_rule>("contact_rule", one_of({"resolved", "reference"})),
+       option<&Config::method, &Method::stress>("stress", one_of({"rows", "afw"})),
        option<&Config::adapt, &AdaptOptions::bars, &ErrorBars::levels>("energy",
                                                                        one_of({"off", "last", "every"}))});
   return options;

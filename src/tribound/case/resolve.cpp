@@ -243,6 +243,7 @@ io::CaseFacts case_facts(const Config& config, int dimension)
                       .file = config.file,
                       .dimension = dimension,
                       .degree = config.method.degree,
+                      .stress = config.method.stress,
                       .friction = friction_name(config),
                       .gamma0 = config.method.gamma_0(),
                       .units = config.units};

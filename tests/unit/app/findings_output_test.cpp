@@ -31,8 +31,8 @@ TEST(Findings, AsJson)
   const std::vector<doctor::Finding> some = {
       {"a", doctor::Severity::ok, "all is well", {}, {}, {}},
       {"b", doctor::Severity::warning, "odd", {{"kink", 2.5}}, {1, 0.5}, "mend it"}};
-  const auto json =
-      nlohmann::json::parse(app::check_json({"T", "case.toml", 2, 1, "none", 10}, {}, "direct", some));
+  const auto json = nlohmann::json::parse(
+      app::check_json({"T", "case.toml", 2, 1, certify::PatchStress::rows, "none", 10}, {}, "direct", some));
   EXPECT_EQ(json["title"], "T");
   EXPECT_EQ(json["solver"], "direct");
   EXPECT_EQ(json["warnings"], 1);

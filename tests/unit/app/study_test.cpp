@@ -38,7 +38,7 @@ app::StudiedLevel level(int number, long dofs, int newton_steps)
 app::Study example()
 {
   app::Study study;
-  study.facts = {"Block", "case.toml", 2, 1, "tresca", 10.0};
+  study.facts = {"Block", "case.toml", 2, 1, certify::PatchStress::rows, "tresca", 10.0};
   study.gamma_lin = 0.1;
   study.marking = "doerfler";
   study.theta = 0.6;

@@ -17,7 +17,7 @@ using ::testing::Not;
 app::Verification example()
 {
   app::Verification v;
-  v.facts = {"Block", "case.toml", 2, 1, "tresca", 10.0};
+  v.facts = {"Block", "case.toml", 2, 1, certify::PatchStress::rows, "tresca", 10.0};
   v.mesh.cells = 16;
   v.mesh.free_dofs = 24;
   v.refinements = 2;

@@ -340,6 +340,8 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
        { return choice(row, static_cast<int>(c.adapt.bars.levels)); }},
       {"certify.contact_rule", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.method.contact_rule)); }},
+      {"certify.stress", [](const case_file::Config& c, const Row& row)
+       { return choice(row, static_cast<int>(c.method.stress)); }},
       {"solver.method", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.method.solver.method)); }},
       {"solver.package", [](const case_file::Config& c, const Row& row)

@@ -61,6 +61,7 @@ separate_contact = true
 
 [certify]
 contact_rule = "reference"
+stress = "rows"
 
 [solver]
 method = "iterative"
@@ -105,6 +106,7 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.adapt.max_memory, 2.5);
   EXPECT_TRUE(config.adapt.marking.separate_contact);
   EXPECT_EQ(config.method.contact_rule, certify::ContactRule::reference);
+  EXPECT_EQ(config.method.stress, certify::PatchStress::rows);
   EXPECT_EQ(config.method.solver.method, algebra::LinearMethod::iterative);
   EXPECT_EQ(config.method.solver.package, algebra::DirectPackage::umfpack);
   EXPECT_EQ(config.method.solver.tolerance, 1e-8);

@@ -18,7 +18,8 @@ namespace
 constexpr int size = 3;
 using Edges = std::vector<std::array<int, 2>>;
 
-/// Blocks (i, j) of the edges are random, those on the diagonal dominate. Returns |A x - b| for a random b.
+/// Blocks (i, j) of the edges are random, those on the diagonal dominate. Returns |A x - b| for a random b,
+/// which is also the last of several columns solved for at a time.
 double largest_defect(int n_blocks, const Edges& edges, certify::BlockCholesky<size>& matrix)
 {
   std::mt19937 generator(n_blocks);
@@ -48,8 +49,18 @@ double largest_defect(int n_blocks, const Edges& edges, certify::BlockCholesky<s
   for (auto& block : x)
     for (int r = 0; r < size; ++r) block[r] = entry(generator);
   const auto b = x;
+  std::vector<certify::Dense<size, 2>> columns(n_blocks);
+  for (int i = 0; i < n_blocks; ++i)
+    for (int r = 0; r < size; ++r) columns[i](r, 1) = b[i][r];
   EXPECT_TRUE(matrix.factor());
   matrix.solve(x);
+  matrix.solve(std::span(columns));
+  for (int i = 0; i < n_blocks; ++i)
+    for (int r = 0; r < size; ++r)
+    {
+      EXPECT_EQ(columns[i](r, 0), 0);
+      EXPECT_NEAR(columns[i](r, 1), x[i][r], 1e-15);
+    }
   double largest = 0;
   for (int i = 0; i < n; ++i)
   {
@@ -90,6 +101,27 @@ TEST(BlockCholesky, RefusesASingularMatrix)
   matrix.connect(0, 1);
   EXPECT_EQ(matrix.order().size(), 2U);
   EXPECT_FALSE(matrix.factor());
+}
+
+TEST(BlockCholesky, ClearedItIsZeroAndKeepsItsConnections)
+{
+  certify::BlockCholesky<size> matrix;
+  matrix.reset(2);
+  matrix.connect(0, 1);
+  EXPECT_EQ(matrix.order().size(), 2U);
+  std::array<certify::DenseVector<size>, 2> x;
+  for (const double diagonal : {2.0, 4.0})
+  {
+    matrix.clear();
+    for (int r = 0; r < size; ++r) matrix.block(0, 0)(r, r) = matrix.block(1, 1)(r, r) = diagonal;
+    if (diagonal == 2) matrix.block(0, 1)(0, 0) = 1;
+    EXPECT_TRUE(matrix.factor());
+    for (auto& block : x)
+      for (int r = 0; r < size; ++r) block[r] = 1;
+    matrix.solve(x);
+  }
+  for (const auto& block : x)
+    for (int r = 0; r < size; ++r) EXPECT_EQ(block[r], 0.25);
 }
 
 TEST(BlockCholesky, DecouplesRowsAndColumns)

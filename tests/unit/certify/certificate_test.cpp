@@ -39,14 +39,14 @@ contact::StressNorms norms_of(double sigma, double round_off = 0)
 
 TEST(Judge, CertifiesAtTheTolerance)
 {
-  const certify::Verdict verdict = certify::judge(bound_of(0.02), {}, 2, norms_of(2.0), 0.01);
+  const certify::Verdict verdict = certify::judge(bound_of(0.02), {}, norms_of(2.0), 0.01);
   EXPECT_EQ(verdict.status, certify::RunStatus::certified);
   EXPECT_EQ(verdict.reason, "");
 }
 
 TEST(Judge, AboveTheToleranceTheBoundStillHolds)
 {
-  const certify::Verdict verdict = certify::judge(bound_of(0.021), {}, 2, norms_of(2.0), 0.01);
+  const certify::Verdict verdict = certify::judge(bound_of(0.021), {}, norms_of(2.0), 0.01);
   EXPECT_EQ(verdict.status, certify::RunStatus::budget);
   EXPECT_THAT(verdict.reason, HasSubstr("1.05 %"));
 }
@@ -60,29 +60,27 @@ TEST(Judge, AViolatedIdentityIsNeverCertified)
     {
       certify::IdentityDefects defects;
       defects.*member = defect;
-      EXPECT_EQ(certify::judge(bound_of(0), defects, 2, norms_of(1), 0.01).status,
+      EXPECT_EQ(certify::judge(bound_of(0), defects, norms_of(1), 0.01).status,
                 certify::RunStatus::not_certified);
     }
 }
 
 TEST(Judge, SymmetryIsNoIdentityOfDegreeOne)
 {
-  EXPECT_EQ(certify::judge(bound_of(0), {0, 0, 0, 0, 1}, 1, norms_of(1), 0.01).status,
+  EXPECT_EQ(certify::judge(bound_of(0), {0, 0, 0, 0, 1, false}, norms_of(1), 0.01).status,
             certify::RunStatus::certified);
 }
 
 TEST(Judge, NumbersThatAreNotFiniteAreNeverCertified)
 {
-  EXPECT_EQ(certify::judge(bound_of(nan), {}, 1, norms_of(1), 0.01).status,
-            certify::RunStatus::not_certified);
-  EXPECT_EQ(certify::judge(bound_of(1), {}, 1, norms_of(nan), 0.01).status,
-            certify::RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(nan), {}, norms_of(1), 0.01).status, certify::RunStatus::not_certified);
+  EXPECT_EQ(certify::judge(bound_of(1), {}, norms_of(nan), 0.01).status, certify::RunStatus::not_certified);
 }
 
 TEST(Judge, ABodyWithoutStressIsCertifiedByABoundOfZeroOnly)
 {
-  EXPECT_EQ(certify::judge(bound_of(0), {}, 1, norms_of(0), 0.01).status, certify::RunStatus::certified);
-  const certify::Verdict bounded = certify::judge(bound_of(1e-3), {}, 1, norms_of(0), 0.01);
+  EXPECT_EQ(certify::judge(bound_of(0), {}, norms_of(0), 0.01).status, certify::RunStatus::certified);
+  const certify::Verdict bounded = certify::judge(bound_of(1e-3), {}, norms_of(0), 0.01);
   EXPECT_EQ(bounded.status, certify::RunStatus::budget);
   EXPECT_THAT(bounded.reason, HasSubstr("the stress is zero"));
 }
@@ -91,11 +89,11 @@ TEST(Judge, WhatIsNothingButRoundingIsComparedWithRounding)
 {
   certify::IdentityDefects defects;
   defects.divergence = 1.05;
-  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, 2, norms_of(2e-15, 1e-13), 0.01).status,
+  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, norms_of(2e-15, 1e-13), 0.01).status,
             certify::RunStatus::certified);
-  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, 2, norms_of(2e-13, 1e-13), 0.01).status,
+  EXPECT_EQ(certify::judge(bound_of(1e-15), defects, norms_of(2e-13, 1e-13), 0.01).status,
             certify::RunStatus::not_certified);
-  EXPECT_EQ(certify::judge(bound_of(2e-13), defects, 2, norms_of(1e-15, 1e-13), 0.01).status,
+  EXPECT_EQ(certify::judge(bound_of(2e-13), defects, norms_of(1e-15, 1e-13), 0.01).status,
             certify::RunStatus::not_certified);
 }
 

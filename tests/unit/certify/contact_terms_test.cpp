@@ -219,7 +219,7 @@ TEST(ContactTerms, ADegreeBeyondTheKernelsIsAnError)
   const fem::LagrangeSpace<2> space(c.mesh, fem::max_degree + 1);
   const contact::NitscheForm<2> form(c.problem, space, 10);
   EXPECT_THROW(certify::ContactTerms<2>(form, certify::ContactRule::resolved), InputError);
-  EXPECT_THROW(certify::Equilibrator<2> equilibrator(form), InputError);
+  EXPECT_THROW(certify::Equilibrator<2>(form, certify::PatchStress::rows), InputError);
 }
 
 }  // namespace

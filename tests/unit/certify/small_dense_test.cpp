@@ -120,6 +120,13 @@ TYPED_TEST(SmallDense, CholeskySolves)
       EXPECT_NEAR(product, b(i, j), 1e-12);
     }
   }
+  certify::solve_upper<n, certify::padded(3)>(factor.data(), factor.stride, reciprocal.data(), columns.data(),
+                                              columns.stride);
+  auto product = b;
+  certify::subtract_product<n, certify::padded(3), n>(product.data(), product.stride, matrix.data(),
+                                                      matrix.stride, columns.data(), columns.stride);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < product.stride; ++j) EXPECT_NEAR(product(i, j), 0, 1e-12);
 }
 
 TYPED_TEST(SmallDense, CholeskyRefusesWhatIsNotDefinite)

@@ -81,7 +81,7 @@ auto AlgebraicResidual<dim>::forces_at_vertices(std::span<const double> residual
 }
 
 template <int dim>
-RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& forces) const
+RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& forces, bool constant) const
 {
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   const Point<dim>& a = mesh.vertex(vertex);
@@ -115,7 +115,7 @@ RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& 
   const RigidMotions<dim> motions(
       a, size,
       std::span(fixed_).subspan(fixed_begin_[vertex], fixed_begin_[vertex + 1] - fixed_begin_[vertex]));
-  const int n = form_.space().degree() == 1 ? motions.n_translations() : motions.size();
+  const int n = constant ? motions.n_translations() : motions.size();
   using Gram = Eigen::Matrix<double, RigidMotions<dim>::n_all, RigidMotions<dim>::n_all>;
   Gram gram = Gram::Identity();
   Eigen::Matrix<double, RigidMotions<dim>::n_all, 1> work =
@@ -140,8 +140,10 @@ RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& 
 }
 
 template <int dim>
-AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> residual) const
+AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> residual,
+                                                     PatchStress patches) const
 {
+  const bool constant = patches == PatchStress::rows || form_.space().degree() == 1;
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   std::vector<double> all(residual.begin(), residual.end());
   form_.space().update(std::span(all));
@@ -151,7 +153,7 @@ AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> res
                [&](std::size_t v)
                {
                  if (mesh.has_patch(static_cast<Index>(v)))
-                   at_vertex[v] = rigid_force(static_cast<Index>(v), forces[v]);
+                   at_vertex[v] = rigid_force(static_cast<Index>(v), forces[v], constant);
                });
   AffineFields<dim> rho(mesh.n_owned_cells());
   parallel_for(rho.size(),

@@ -10,6 +10,7 @@
 
 #include "tribound/certify/bound/friedrichs.h"
 #include "tribound/certify/equilibrate/rigid.h"
+#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
@@ -31,11 +32,12 @@ class AlgebraicResidual
   /// incomplete at ghosts. t is the running traction at the contact points of the form.
   [[nodiscard]] std::vector<double> residual(std::span<const double> u, std::span<const Point<dim>> t) const;
 
-  /// rho = sum_a rho_a on the own cells, rho_a in Z_a (constants for p = 1) with
+  /// rho = sum_a rho_a on the own cells, rho_a in Z_a (its constants for p = 1 and row by row) with
   ///     (rho_a, z)_{omega_a} = <R_lin, psi_a z> for all z in Z_a:
-  /// With the stress of u and t, div sigma_h + Pi^{p-1} f = rho. `residual`: <R_lin, phi_i>; psi_a z is in
-  /// V_h (p = 1: for constant z). Its entries at fixed degrees of freedom and at ghosts are not used.
-  [[nodiscard]] AffineFields<dim> body_force(std::span<const double> residual) const;
+  /// With the stress of u and t from these patches, div sigma_h + Pi^{p-1} f = rho. `residual`: <R_lin,
+  /// phi_i>; psi_a z is in V_h (p = 1: for constant z). Its entries at fixed degrees of freedom and at ghosts
+  /// are not used.
+  [[nodiscard]] AffineFields<dim> body_force(std::span<const double> residual, PatchStress patches) const;
 
  private:
   /// sum_i psi_a(x_i) r_i, and its moment with x_i - a.
@@ -45,7 +47,7 @@ class AlgebraicResidual
     Tensor<dim> moment = Tensor<dim>::Zero();
   };
   [[nodiscard]] std::vector<Forces> forces_at_vertices(std::span<const double> residual) const;
-  [[nodiscard]] RigidField<dim> rigid_force(Index vertex, const Forces& forces) const;
+  [[nodiscard]] RigidField<dim> rigid_force(Index vertex, const Forces& forces, bool constant) const;
 
   const contact::NitscheForm<dim>& form_;
   std::vector<Index> fixed_begin_;      ///< per vertex, into `fixed_`; one more at the end

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/contact/nitsche/contact_moments.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
@@ -91,51 +91,96 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
   return loads;
 }
 
-/// The points of the facet rule on all facets of the reference cell, facet by facet.
-template <int dim>
-std::vector<Point<dim>> points_on_facets(const fem::Quadrature<dim - 1>& rule)
-{
-  std::vector<Point<dim>> points;
-  for (int local = 0; local <= dim; ++local)
-  {
-    const std::vector<Point<dim>> on_facet = fem::points_on_facet<dim>(local, rule.points);
-    points.insert(points.end(), on_facet.begin(), on_facet.end());
-  }
-  return points;
-}
-
-/// The integral of sigma_h n over every boundary, without the free components where a displacement is given.
+/// The integral of t over every boundary in contact, slave or master.
 template <int dim>
 std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>& form,
-                                                const Stress<dim>& stress, const Point<dim>& about)
+                                                std::span<const Point<dim>> t, const Point<dim>& about)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(stress.degree + 1);  // sigma_h times x
-  const StressTabulation<dim> table(stress.degree, points_on_facets<dim>(rule));
-  const int n = table.n_points();
+  const std::vector<Point<dim - 1>>& points = form.facet_rule().points;
   std::vector<Resultant<dim>> result(form.problem().boundaries().size());
-  std::vector<double> block(stress.block_size());
-  std::vector<double> sigma(static_cast<std::size_t>(dim) * dim * n);
-  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+    form.segments()[k].for_each_side(
+        [&](const contact::SegmentSide<dim>& side)
+        {
+          const auto map = contact::simplex_map(mesh, side);
+          for (std::size_t q = 0; q < points.size(); ++q)
+            result[side.facet.tag].add(
+                map(points[q]) - about,
+                side.sign * form.contact_points(static_cast<int>(k))[q].weight * t[k * points.size() + q]);
+        });
+  add_up<dim>(mesh.ranks(), result);
+  return result;
+}
+
+/// A node of a boundary with fixed components.
+struct SupportNode
+{
+  Index node;
+  int tag;         ///< of the boundary
+  double measure;  ///< of its facets around the node
+
+  friend auto operator<=>(const SupportNode& a, const SupportNode& b) = default;
+};
+
+/// Every node once for each of its boundaries, sorted.
+template <int dim>
+std::vector<SupportNode> support_nodes(const contact::NitscheForm<dim>& form)
+{
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  std::vector<SupportNode> found;
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
-    const bool in_contact = form.problem().is_in_contact(facet.tag);
-    if (facet.tag < 0 || (!in_contact && !condition.fixes_any())) continue;
-    std::ranges::copy(stress.dis_in(facet.cell), block.begin());
-    for (const std::span<const double> part : {stress.lin_in(facet.cell), stress.reg_in(facet.cell)})
-      for (std::size_t i = 0; i < part.size(); ++i) block[i] += part[i];
-    table.evaluate(make_sorted_cell(mesh, facet.cell), block, sigma);
-    const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
-    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+    if (facet.tag < 0 || !form.problem().boundary(facet.tag).fixes_any()) continue;
+    const double det = mesh::facet_geometry(mesh, facet.cell, facet.local).det();
+    const std::span<const Index> nodes = space.cell_nodes(facet.cell);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (space.basis().node(static_cast<int>(i))[facet.local] == 0)
+        found.push_back({nodes[i], facet.tag, det});
+  }
+  std::ranges::sort(found);
+  std::vector<SupportNode> united;
+  for (const SupportNode& part : found)
+    if (!united.empty() && united.back().node == part.node && united.back().tag == part.tag)
+      united.back().measure += part.measure;
+    else
+      united.push_back(part);
+  return united;
+}
+
+/// The force of every boundary in its fixed components: what its nodes lack of equilibrium. Where boundaries
+/// that fix the same component meet, they share it by the measures of their facets around the node.
+template <int dim>
+std::vector<Resultant<dim>> sum_reactions(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                          std::span<const Point<dim>> t, const Point<dim>& about)
+{
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const std::vector<double> lacking = contact::unconstrained_residual<dim>(form, u, t);
+  const std::vector<Point<dim>> points = space.node_points();
+  const std::vector<SupportNode> nodes = support_nodes(form);
+  std::vector<char> is_own(space.n_nodes(), 0);
+  for (Index k = 0; k < space.n_owned_nodes(); ++k) is_own[space.owned_node(k)] = 1;
+  std::vector<Resultant<dim>> result(form.problem().boundaries().size());
+  for (auto first = nodes.begin(); first != nodes.end();)
+  {
+    const auto end =
+        std::find_if(first, nodes.end(), [&](const SupportNode& n) { return n.node != first->node; });
+    const std::span<const SupportNode> here(first, end);
+    first = end;
+    if (is_own[here.front().node] == 0) continue;
+    for (int c = 0; c < dim; ++c)
     {
-      Point<dim> t = Point<dim>::Zero();
-      for (int r = 0; r < dim; ++r)
-        for (int c = 0; c < dim && (in_contact || condition.fixes(r)); ++c)
-          t[r] += sigma[(dim * r + c) * n + facet.local * rule.size() + q] * normal[c];
-      result[facet.tag].add(x - about, dx * t);
+      double measure = 0;
+      for (const SupportNode& n : here)
+        if (form.problem().boundary(n.tag).fixes(c)) measure += n.measure;
+      const double force = -lacking[static_cast<std::size_t>(dim) * here.front().node + c];
+      for (const SupportNode& n : here)
+        if (form.problem().boundary(n.tag).fixes(c))
+          result[n.tag].add(points[n.node] - about, n.measure / measure * force * Point<dim>::Unit(c));
     }
   }
-  add_up<dim>(mesh.ranks(), result);
+  add_up<dim>(space.mesh().ranks(), result);
   return result;
 }
 
@@ -149,22 +194,23 @@ std::string load_source(const problem::BoundaryCondition<dim>& condition)
 
 template <int dim>
 BalanceRow row(BalanceKind kind, const std::string& name, const std::string& source,
-               const Resultant<dim>& resultant, bool has_moment = true)
+               const Resultant<dim>& resultant)
 {
-  BalanceRow result{kind, name, source, {resultant.force.begin(), resultant.force.end()}, {}};
-  if (has_moment) result.moment.emplace(resultant.moment.begin(), resultant.moment.end());
-  return result;
+  return {kind,
+          name,
+          source,
+          {resultant.force.begin(), resultant.force.end()},
+          {resultant.moment.begin(), resultant.moment.end()}};
 }
 
-/// Adds the sum of all rows; its moment is known if all moments are.
+/// Adds the sum of all rows.
 void add_sum(std::vector<BalanceRow>& rows, std::size_t dim, std::size_t n_moments)
 {
   BalanceRow sum{BalanceKind::sum, {}, {}, std::vector<double>(dim), std::vector<double>(n_moments)};
   for (const BalanceRow& part : rows)
   {
     for (std::size_t i = 0; i < dim; ++i) sum.force[i] += part.force[i];
-    if (!part.moment) sum.moment.reset();
-    for (std::size_t i = 0; sum.moment && i < n_moments; ++i) (*sum.moment)[i] += (*part.moment)[i];
+    for (std::size_t i = 0; i < n_moments; ++i) sum.moment[i] += part.moment[i];
   }
   rows.push_back(std::move(sum));
 }
@@ -175,15 +221,6 @@ std::string to_string(BalanceKind kind)
 {
   constexpr std::array names = {"load", "reaction", "contact", "sum"};
   return names[static_cast<std::size_t>(kind)];
-}
-
-std::string moment_note(const Balance& balance)
-{
-  if (std::ranges::all_of(balance.rows, [](const BalanceRow& row) { return row.moment.has_value(); }))
-    return {};
-  return "moments of reactions need degree 2 or more: with degree 1 the equilibrated stress is symmetric "
-         "only "
-         "up to the error";
 }
 
 template <int dim>
@@ -201,41 +238,43 @@ Point<dim> centroid(const mesh::Mesh<dim>& mesh)
 }
 
 template <int dim>
-Balance balance(const contact::NitscheForm<dim>& form, const Stress<dim>& stress, const Point<dim>& about)
+Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                std::span<const Point<dim>> t, const Point<dim>& about)
 {
   const problem::Problem<dim>& problem = form.problem();
   const Loads<dim> loads = integrate_loads<dim>(form, about);
-  const std::vector<Resultant<dim>> tractions = integrate_tractions<dim>(form, stress, about);
+  const std::vector<Resultant<dim>> tractions = integrate_tractions<dim>(form, t, about);
+  const std::vector<Resultant<dim>> reactions = sum_reactions<dim>(form, u, t, about);
   Balance result{{about.begin(), about.end()}, {}};
   for (int r = 0; r < static_cast<int>(loads.regions.size()); ++r)
     if (!problem.body_force_is_zero(r))
       result.rows.push_back(
           row(BalanceKind::load, problem.regions()[r].name, "body force", loads.regions[r]));
   const auto boundaries = problem.boundaries();
-  const auto add =
-      [&](BalanceKind kind, const auto& applies, const auto& source, const auto& resultants, bool has_moment)
+  const auto add = [&](BalanceKind kind, const auto& applies, const auto& source, const auto& resultants)
   {
     for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
       if (applies(boundaries[tag], static_cast<int>(tag)))
-        result.rows.push_back(
-            row(kind, boundaries[tag].name, source(boundaries[tag]), resultants[tag], has_moment));
+        result.rows.push_back(row(kind, boundaries[tag].name, source(boundaries[tag]), resultants[tag]));
   };
   add(
-      BalanceKind::load, [](const auto& b, int) { return b.is_loaded(); }, load_source<dim>, loads.boundaries,
-      true);
+      BalanceKind::load, [](const auto& b, int) { return b.is_loaded(); }, load_source<dim>,
+      loads.boundaries);
   add(
       BalanceKind::reaction, [](const auto& b, int) { return b.fixes_any(); },
-      [](const auto&) { return "displacement"; }, tractions, stress.degree > 1);
+      [](const auto&) { return "displacement"; }, reactions);
   add(
       BalanceKind::contact, [&](const auto&, int tag) { return problem.is_in_contact(tag); },
-      [](const auto&) { return "contact"; }, tractions, true);
+      [](const auto&) { return "contact"; }, tractions);
   add_sum(result.rows, dim, Resultant<dim>::n_moments);
   return result;
 }
 
 template Point<2> centroid(const mesh::Mesh<2>&);
 template Point<3> centroid(const mesh::Mesh<3>&);
-template Balance balance(const contact::NitscheForm<2>&, const Stress<2>&, const Point<2>&);
-template Balance balance(const contact::NitscheForm<3>&, const Stress<3>&, const Point<3>&);
+template Balance balance(const contact::NitscheForm<2>&, std::span<const double>, std::span<const Point<2>>,
+                         const Point<2>&);
+template Balance balance(const contact::NitscheForm<3>&, std::span<const double>, std::span<const Point<3>>,
+                         const Point<3>&);
 
 }  // namespace tribound::certify

@@ -49,13 +49,13 @@ std::string identity_violation(double defect)
       defect, identity_limit);
 }
 
-Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
-              const contact::StressNorms& norms, double tolerance)
+Verdict judge(const Bound& bound, const IdentityDefects& identities, const contact::StressNorms& norms,
+              double tolerance)
 {
   if (!std::isfinite(bound.total_sharp) || !std::isfinite(norms.sigma))
     return {RunStatus::not_certified, "the bound is not a finite number"};
   if (is_round_off(bound, norms)) return {RunStatus::certified, {}};
-  if (std::string violation = identity_violation(identities.largest(degree)); !violation.empty())
+  if (std::string violation = identity_violation(identities.largest()); !violation.empty())
     return {RunStatus::not_certified, std::move(violation)};
   if (bound.total_sharp <= tolerance * norms.sigma) return {RunStatus::certified, {}};
   if (norms.sigma == 0)

@@ -47,7 +47,7 @@ struct Verdict
 
 /// Certified if the stress is only rounding, or if the identities hold to identity_limit and
 /// bound.total_sharp <= tolerance * ||sigma(u)||. Numbers that are not finite are never certified.
-[[nodiscard]] Verdict judge(const Bound& bound, const IdentityDefects& identities, int degree,
+[[nodiscard]] Verdict judge(const Bound& bound, const IdentityDefects& identities,
                             const contact::StressNorms& norms, double tolerance);
 
 /// Why the computed numbers are not a bound: an identity is violated by more than identity_limit. Empty if

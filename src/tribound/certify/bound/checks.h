@@ -17,14 +17,15 @@ namespace tribound::certify
 /// stress.
 struct IdentityDefects
 {
-  double divergence = 0;  ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f - rho||_T^2)^{1/2}
-  double jump = 0;        ///< (sum h_F ||[sigma_h n]||_F^2)^{1/2} over facets inside Omega
-  double neumann = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F g_N||_F^2)^{1/2}, free components only
-  double contact = 0;     ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
-  double symmetry = 0;    ///< ||Pi^{p-1} skew sigma_h|| (does not hold for p = 1, see the method)
+  double divergence = 0;     ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f - rho||_T^2)^{1/2}
+  double jump = 0;           ///< (sum h_F ||[sigma_h n]||_F^2)^{1/2} over facets inside Omega
+  double neumann = 0;        ///< (sum h_F ||sigma_h n - Pi^p_F g_N||_F^2)^{1/2}, free components only
+  double contact = 0;        ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
+  double symmetry = 0;       ///< ||Pi^{p-1} skew sigma_h||
+  bool is_symmetric = true;  ///< whether symmetry is one of the identities: Stress::is_symmetric()
 
-  /// The largest of the defects that apply at this degree; nan if one of them is.
-  [[nodiscard]] double largest(int degree) const;
+  /// The largest of the defects that apply; nan if one of them is.
+  [[nodiscard]] double largest() const;
 };
 
 /// t: the running traction t^k at the contact points of the form. rho: what the linear solver has left, if it

@@ -83,10 +83,9 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
         contact_terms(u, stress, result);
         transfer_terms(u, stress, result);
       });
-  const double alg =
-      std::isfinite(friedrichs_.value)
-          ? algebraic_error<dim>(mesh, algebraic_remainder(u, stress.tractions.running()), friedrichs_.value)
-          : 0;
+  const double alg = std::isfinite(friedrichs_.value)
+                         ? algebraic_error<dim>(mesh, algebraic_remainder(u, stress), friedrichs_.value)
+                         : 0;
   add_up(result, data_.missed > 0 ? friedrichs_.value * data_.missed : 0, alg, mesh.ranks());
   return result;
 }
@@ -262,10 +261,10 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
 
 template <int dim>
 AffineFields<dim> Estimator<dim>::algebraic_remainder(std::span<const double> u,
-                                                      std::span<const Point<dim>> t) const
+                                                      const Stress<dim>& stress) const
 {
   if (!std::isfinite(friedrichs_.value)) return {};
-  return algebraic_.body_force(algebraic_.residual(u, t));
+  return algebraic_.body_force(algebraic_.residual(u, stress.tractions.running()), stress.patches);
 }
 
 template class Estimator<2>;

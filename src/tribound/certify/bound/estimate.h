@@ -49,13 +49,14 @@ class Estimator
   /// If it is infinite, the bound has no alg; then the stress must satisfy div sigma_h + Pi^{p-1} f = 0.
   [[nodiscard]] const FriedrichsConstant& friedrichs() const { return friedrichs_; }
 
-  /// rho of the iterate u with the running traction t; empty where C_F is infinite.
+  /// rho of the iterate u with its equilibrated stress; empty where C_F is infinite.
   [[nodiscard]] AffineFields<dim> algebraic_remainder(std::span<const double> u,
-                                                      std::span<const Point<dim>> t) const;
+                                                      const Stress<dim>& stress) const;
   /// C_F ||rho|| with rho from <R_lin, phi_i>: not less than alg in the bound.
-  [[nodiscard]] double algebraic_bound(std::span<const double> residual) const
+  [[nodiscard]] double algebraic_bound(std::span<const double> residual, PatchStress patches) const
   {
-    return friedrichs_.value * field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual));
+    return friedrichs_.value *
+           field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual, patches));
   }
 
   /// The components of the iterate u with its equilibrated stress. Cells are distributed over `n_threads`

@@ -104,9 +104,9 @@ EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<con
 template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
-  Parts(const contact::NitscheForm<dim>& given, PatchNorm norm)
+  Parts(const contact::NitscheForm<dim>& given, PatchStress patches)
       : form(given.space().degree() >= lowest_degree ? given : richer(given)),
-        equilibrator(form, 0, norm),
+        equilibrator(form, patches),
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
@@ -136,12 +136,13 @@ struct EnergyEstimator<dim>::Parts
 template <int dim>
 EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
                                       const algebra::SolverOptions& solver,
-                                      const std::vector<problem::Quantity<dim>>& quantities, PatchNorm norm)
+                                      const std::vector<problem::Quantity<dim>>& quantities,
+                                      PatchStress patches)
     : form_(form), solver_(solver), reason_(why_no_energy_bound(form))
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
-  parts_ = std::make_unique<Parts>(form, norm);
+  parts_ = std::make_unique<Parts>(form, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
   if (reason_.empty() && quantities_)
@@ -246,7 +247,7 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const Stress<dim> stress = parts_->equilibrator.balanced(balanced, t_h.at_points, turning);
 
   const IdentityDefects identities = check_identities<dim>(form, t_h.at_points, stress);
-  if (!(identities.largest(stress.degree) <= cell_balance_limit))
+  if (!(identities.largest() <= cell_balance_limit))
     return {.reason = "an identity of the equilibrated stress is violated"};
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};

@@ -85,7 +85,7 @@ class EnergyEstimator
   /// quantities that the problem does not have, and SolveError if their dual problems cannot be solved.
   EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver,
                   const std::vector<problem::Quantity<dim>>& quantities = {},
-                  PatchNorm norm = PatchNorm::compliance);
+                  PatchStress patches = PatchStress::afw_compliance);
   ~EnergyEstimator();
   EnergyEstimator(const EnergyEstimator&) = delete;
   EnergyEstimator& operator=(const EnergyEstimator&) = delete;

@@ -59,6 +59,9 @@ class BlockCholesky
     return pool_[index_[i * n_ + j]];
   }
 
+  /// All blocks become 0 again; order and connections stay.
+  void clear() { std::fill_n(pool_.begin(), columns_.size(), Matrix{}); }
+
   /// Replaces `count` rows and columns of block row i, from `begin` on, by those of a multiple of the
   /// identity.
   template <int count>
@@ -126,6 +129,28 @@ class BlockCholesky
       solve_upper<n>(pool_[diagonal].data(), stride, reciprocal_[i].data(), x[i].data());
     }
   }
+  /// The same for m right-hand sides, the columns.
+  template <int m>
+  void solve(std::span<Dense<n, m>> x) const
+  {
+    constexpr int width = padded(m);
+    for (int i = 0; i < n_; ++i)
+    {
+      const int diagonal = row_begin_[i];
+      solve_transposed<n, width>(pool_[diagonal].data(), stride, reciprocal_[i].data(), x[i].data(), width);
+      for (int e = diagonal + 1; e < row_begin_[i + 1]; ++e)
+        subtract_transposed_product<n, width, n>(x[columns_[e]].data(), width, pool_[e].data(), stride,
+                                                 x[i].data(), width);
+    }
+    for (int i = n_ - 1; i >= 0; --i)
+    {
+      const int diagonal = row_begin_[i];
+      for (int e = diagonal + 1; e < row_begin_[i + 1]; ++e)
+        certify::subtract_product<n, width, n>(x[i].data(), width, pool_[e].data(), stride,
+                                               x[columns_[e]].data(), width);
+      solve_upper<n, width>(pool_[diagonal].data(), stride, reciprocal_[i].data(), x[i].data(), width);
+    }
+  }
 
  private:
   static constexpr int stride = Matrix::stride;
@@ -188,7 +213,7 @@ class BlockCholesky
       row_begin_.push_back(static_cast<int>(columns_.size()));
     }
     pool_.resize(std::max(pool_.size(), columns_.size()));
-    std::fill_n(pool_.begin(), columns_.size(), Matrix{});
+    clear();
   }
 
   int n_ = 0;

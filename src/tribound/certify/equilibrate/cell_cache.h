@@ -82,45 +82,82 @@ class BodyMoments
   std::vector<Vector> moments_;
 };
 
-/// Where prepared cells come from.
+/// What a patch in the Arnold-Falk-Winther spaces needs of cell c beside its operator. `turning`: K_{T,a} at
+/// its vertices, or empty.
 template <int dim, int p>
+void fill(PreparedCell<dim, p>& cell, Index c, const BodyMoments<dim, p>& body,
+          std::span<const Tensor<dim>> turning)
+{
+  cell.divergence = discrete_divergence<dim, p>(cell.sorted, cell.sigma);
+  for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
+  find_coordinates(cell);
+  if (turning.empty()) return;
+  const Point<dim> to_centre = cell.sorted.jacobian.rowwise().sum() / (dim + 1);
+  for (int a = 0; a <= dim; ++a)  // K_{T,a} (x - x_T) beside -psi_a f
+    add_moments(cell.body[a], cell, 0, RigidField<dim>{-turning[a] * to_centre, turning[a]}, -1);
+}
+
+/// What a patch row by row needs.
+template <int dim, int p>
+void fill(RowCell<dim, p>& cell, Index c, const BodyMoments<dim, p>& body,
+          [[maybe_unused]] std::span<const Tensor<dim>> turning)
+{
+  assert(turning.empty());  // constants of the rows do not feel it
+  constexpr int m = Sizes<dim, p>::multiplier;
+  const auto by_rows = [](const DenseVector<dim * m>& moments)
+  {
+    typename RowCell<dim, p>::CellRows rows;
+    for (int r = 0; r < dim; ++r)
+      for (int i = 0; i < m; ++i) rows(i, r) = moments[r * m + i];
+    return rows;
+  };
+  cell.divergence = by_rows(discrete_divergence<dim, p>(cell.sorted, cell.sigma));
+  for (int a = 0; a <= dim; ++a) cell.body[a] = by_rows(body(c, a));
+  for (int f = 0; f <= dim; ++f)
+  {
+    cell.normal[f] = {};
+    const Point<dim> direction = -1 / std::sqrt(cell.sorted.grad_norm[f]) * cell.sorted.grad[f];
+    for (int r = 0; r < dim; ++r)
+      for (int k = 0; k < dim; ++k)
+        for (int j = 0; j < m; ++j) cell.normal[f](j, r) += direction[k] * cell.sigma[(dim * r + k) * m + j];
+  }
+}
+
+/// Where prepared cells come from.
+template <class Kind>
 struct CellSource
 {
+  static constexpr int dim = Kind::dim;
+  static constexpr int p = Kind::p;
+  using Cell = typename Kind::Cell;
+  using Operator = typename Kind::Operator;
+
   const contact::NitscheForm<dim>& form;
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
-  const RepeatedShapes<dim, p>& shapes;
+  const RepeatedShapes<Operator>& shapes;
   std::span<const StressMetric> metrics = {};  ///< of the regions; empty: L2 everywhere
   std::span<const Tensor<dim>> turning = {};   ///< K_{T,a}, see Equilibrator::balanced(); empty: 0
 
   /// The Schur complement is only made if `for_patches`.
-  void prepare(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
+  void prepare(Index c, Cell& cell, bool for_patches) const
   {
     const fem::LagrangeSpace<dim>& space = form.space();
     cell.sorted = make_sorted_cell(space.mesh(), c);
     find_operator(c, cell, for_patches);
+    cell.one = moment_of_one<dim, p>(cell.sorted);
     cell.sigma = discrete_stress<dim, p>(cell.sorted, form.problem().material(space.mesh().region(c)),
                                          space.cell_nodes(c), u);
-    cell.divergence = cell.op->divergence(cell.sorted, cell.sigma);
-    for (int a = 0; a <= dim; ++a) cell.body[a] = body(c, a);
-    find_moments(cell);
-    if (!turning.empty()) turn(turning.subspan(static_cast<std::size_t>(c) * (dim + 1), dim + 1), cell);
+    const std::size_t first = turning.empty() ? 0 : static_cast<std::size_t>(c) * (dim + 1);
+    fill(cell, c, body, turning.subspan(first, turning.empty() ? 0 : dim + 1));
   }
 
-  /// K_{T,a} (x - x_T) beside -psi_a f.
-  static void turn(std::span<const Tensor<dim>> of_vertices, PreparedCell<dim, p>& cell)
-  {
-    const Point<dim> to_centre = cell.sorted.jacobian.rowwise().sum() / (dim + 1);
-    for (int a = 0; a <= dim; ++a)
-      add_moments(cell.body[a], cell, 0, RigidField<dim>{-of_vertices[a] * to_centre, of_vertices[a]}, -1);
-  }
-
-  void find_operator(Index c, PreparedCell<dim, p>& cell, bool for_patches) const
+  void find_operator(Index c, Cell& cell, bool for_patches) const
   {
     cell.shape = shapes.find(c);
     cell.op = cell.shape ? &cell.shape->op : nullptr;
     if (cell.shape) return;
-    if (!cell.own) cell.own = std::make_unique<CellOperator<dim, p>>();
+    if (!cell.own) cell.own = std::make_unique<Operator>();
     cell.own->build(cell.sorted, metrics.empty() ? StressMetric{} : metrics[form.space().mesh().region(c)]);
     if (for_patches) cell.own->condense(cell.sorted);
     cell.op = cell.own.get();
@@ -129,7 +166,7 @@ struct CellSource
 
 /// The cells that a part of the vertices needs: prepared when first asked for, forgotten when the caller has
 /// done with them.
-template <int dim, int p>
+template <class Kind>
 class CellCache
 {
  public:
@@ -137,13 +174,13 @@ class CellCache
   {
     explicit Slot(int n_parts) : shares(n_parts) {}
 
-    PreparedCell<dim, p> cell;
-    CellShares<dim, p> shares;
+    typename Kind::Cell cell;
+    CellShares<typename Kind::Share, Kind::dim> shares;
     int waiting = 0;  ///< vertices of the part that still need the cell; 0 when it is new
   };
 
   /// For stresses of n_parts parts.
-  CellCache(const CellSource<dim, p>& source, int n_parts)
+  CellCache(const CellSource<Kind>& source, int n_parts)
       : source_(source), n_parts_(n_parts), slot_(source.form.space().mesh().n_cells(), -1)
   {
   }
@@ -171,7 +208,7 @@ class CellCache
   }
 
  private:
-  const CellSource<dim, p>& source_;
+  const CellSource<Kind>& source_;
   int n_parts_;
   std::vector<int> slot_;  ///< per cell: index in pool_, or -1
   std::vector<std::unique_ptr<Slot>> pool_;

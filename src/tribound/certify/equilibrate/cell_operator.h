@@ -62,6 +62,8 @@ class CellOperator
 {
  public:
   using S = Sizes<dim, p>;
+  static constexpr int dimension = dim;
+  static constexpr int block = S::block;  ///< multipliers of a facet
   using UVector = DenseVector<S::u>;
   using FacetVectors = Dense<dim + 1, S::block>;  ///< row f: facet f
   /// Columns of all facets, those of facet f from f * facet_stride on.
@@ -79,9 +81,6 @@ class CellOperator
   /// load -= C^T (B B^T)^{-1} r with r = (r_u, -2 w), w the skew tensor of p = 1.
   void subtract_load(FacetVectors& load, const SortedCell<dim>& cell, const UVector& r_u,
                      const Tensor<dim>& w) const;
-
-  /// The moments of the divergence of a discrete stress on U.
-  [[nodiscard]] UVector divergence(const SortedCell<dim>& cell, const DiscreteStress<dim, p>& sigma) const;
 
   /// sigma - G = -C (B^T eta + N^T mu) for the data r = (r_u, -2 w) and the multipliers mu, G being
   /// symmetric.
@@ -110,6 +109,11 @@ template <int dim, int p>
   for (int v = 0; v <= dim; ++v) sum += reference<dim, p>().hat_moment(0, v);
   return std::sqrt(cell.det) * sum;
 }
+
+/// The moments of the divergence of a discrete stress on U.
+template <int dim, int p>
+[[nodiscard]] DenseVector<Sizes<dim, p>::u> discrete_divergence(const SortedCell<dim>& cell,
+                                                                const DiscreteStress<dim, p>& sigma);
 
 /// sigma(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
 template <int dim, int p>

@@ -157,10 +157,11 @@ void CellOperator<dim, p>::subtract_load(FacetVectors& load, const SortedCell<di
 }
 
 template <int dim, int p>
-auto CellOperator<dim, p>::divergence(const SortedCell<dim>& cell, const DiscreteStress<dim, p>& sigma) const
-    -> UVector
+DenseVector<Sizes<dim, p>::u> discrete_divergence(const SortedCell<dim>& cell,
+                                                  const DiscreteStress<dim, p>& sigma)
 {
-  UVector result;
+  using S = Sizes<dim, p>;
+  DenseVector<S::u> result;
   if constexpr (p > 1)
   {
     constexpr int m = S::multiplier;

@@ -16,10 +16,10 @@ namespace
 /// lambda gives a stress that balances: beyond nu = 0.49998 it does not grow any more, which would cost
 /// digits.
 template <int dim>
-std::vector<StressMetric> metrics_of(const problem::Problem<dim>& problem, PatchNorm norm)
+std::vector<StressMetric> metrics_of(const problem::Problem<dim>& problem, PatchStress kind)
 {
   std::vector<StressMetric> metrics;
-  if (norm == PatchNorm::l2) return metrics;
+  if (kind != PatchStress::afw_compliance) return metrics;
   double stiffest = 0;
   for (const problem::Region<dim>& region : problem.regions())
     stiffest = std::max(stiffest, 2 * region.material.mu);
@@ -36,16 +36,17 @@ std::vector<StressMetric> metrics_of(const problem::Problem<dim>& problem, Patch
 }  // namespace
 
 template <int dim>
-Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, int n_threads, PatchNorm norm)
+Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, PatchStress kind, int n_threads)
     : form_(form)
 {
   form.space().mesh().ranks().together(
       [&]
       {
         fem::with_degree(form.space().degree(),
-                         [&](auto p) {
-                           implementation_ = make_mesh_equilibrator<dim, p>(form, n_threads,
-                                                                            metrics_of(form.problem(), norm));
+                         [&](auto p)
+                         {
+                           implementation_ = make_mesh_equilibrator<dim, p>(
+                               form, n_threads, kind == PatchStress::rows, metrics_of(form.problem(), kind));
                          });
       });
 }

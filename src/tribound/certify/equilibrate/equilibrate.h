@@ -12,13 +12,6 @@
 namespace tribound::certify
 {
 
-/// The norm in which the stress of a patch is the nearest to its target.
-enum class PatchNorm
-{
-  l2,
-  compliance  ///< that of C^{-1}, C the elasticity tensor of each cell
-};
-
 /// Rebuilds the stress of the iterates on one mesh. What they share is made once: the order in which the
 /// patches are solved, the moments of f, the operators of repeated shapes.
 ///
@@ -32,8 +25,7 @@ class Equilibrator
 {
  public:
   /// The form must outlive the object.
-  explicit Equilibrator(const contact::NitscheForm<dim>& form, int n_threads = 0,
-                        PatchNorm norm = PatchNorm::l2);
+  Equilibrator(const contact::NitscheForm<dim>& form, PatchStress kind, int n_threads = 0);
   ~Equilibrator();
   Equilibrator(const Equilibrator&) = delete;
   Equilibrator& operator=(const Equilibrator&) = delete;
@@ -64,9 +56,10 @@ class Equilibrator
 /// The stress of one iterate.
 template <int dim>
 [[nodiscard]] Stress<dim> equilibrate(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                                      std::span<const Point<dim>> t, int n_threads = 0, double delta = 0)
+                                      std::span<const Point<dim>> t, int n_threads = 0, double delta = 0,
+                                      PatchStress kind = PatchStress::rows)
 {
-  return Equilibrator<dim>(form, n_threads)(u, t, delta);
+  return Equilibrator<dim>(form, kind, n_threads)(u, t, delta);
 }
 
 }  // namespace tribound::certify

@@ -25,11 +25,11 @@ class Equilibrator<dim>::Implementation
                           std::span<const Tensor<dim>> turning) = 0;
 };
 
-/// An Equilibrator of degree p; arguments are those of its constructor, with the metrics of the regions in
-/// place of how they are chosen (empty: L2 everywhere). Compiled for each dimension and
-/// degree by certify/equilibrate/kernel.cpp.in.
+/// An Equilibrator of degree p; arguments are those of its constructor, the metrics those of the regions for
+/// patches in the Arnold-Falk-Winther spaces (empty: L2 everywhere, as it is row by row). Compiled for each
+/// dimension and degree by certify/equilibrate/kernel.cpp.in.
 template <int dim, int p>
 [[nodiscard]] std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrator(
-    const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics);
+    const contact::NitscheForm<dim>& form, int n_threads, bool by_rows, std::vector<StressMetric> metrics);
 
 }  // namespace tribound::certify

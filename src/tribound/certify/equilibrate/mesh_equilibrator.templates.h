@@ -14,6 +14,7 @@
 #include "tribound/base/parallel.h"
 #include "tribound/certify/equilibrate/cell_cache.h"
 #include "tribound/certify/equilibrate/patch.h"
+#include "tribound/certify/equilibrate/row_patch.h"
 #include "tribound/certify/equilibrate/vertex_partition.h"
 
 namespace tribound::certify
@@ -25,11 +26,14 @@ namespace detail
 /// The stress of one iterate. The patches write their shares into the cells, and a cell with all of them
 /// gives its stress. Every thread has a part of the vertices; cells with vertices in several of them come
 /// last. `with_dis`: the partition has all vertices; otherwise those on Gamma_C, which give sigma_lin.
-template <int dim, int p>
+template <class Kind, class Patch>
 class Equilibration
 {
  public:
-  Equilibration(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<dim, p>& source,
+  static constexpr int dim = Kind::dim;
+  static constexpr int p = Kind::p;
+
+  Equilibration(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data, const CellSource<Kind>& source,
                 const VertexPartition& partition, bool with_dis)
       : mesh_(mesh),
         data_(data),
@@ -50,28 +54,29 @@ class Equilibration
 
  private:
   using S = Sizes<dim, p>;
-  using Cache = CellCache<dim, p>;
-  using Shares = CellShares<dim, p>;
+  using Cell = typename Kind::Cell;
+  using Shares = CellShares<typename Kind::Share, dim>;
 
   void prepare_stress();
   void solve_patches(int part);
   void recover_shared_cells(int part);
-  void recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares);
+  void recover(Index cell, const Cell& prepared, const Shares& shares);
 
   const mesh::Mesh<dim>& mesh_;
   const FacetData<dim, p>& data_;
-  const CellSource<dim, p>& source_;
+  const CellSource<Kind>& source_;
   const VertexPartition& partition_;
   const bool with_dis_;
   Stress<dim> stress_;
   std::vector<Shares> shares_;  ///< of the shared cells
 };
 
-template <int dim, int p>
-void Equilibration<dim, p>::prepare_stress()
+template <class Kind, class Patch>
+void Equilibration<Kind, Patch>::prepare_stress()
 {
   stress_.degree = p;
   stress_.n = S::stress;
+  stress_.patches = Kind::patches;
   if (with_dis_) stress_.dis.resize(mesh_.n_owned_cells() * stress_.block_size());
   stress_.lin_block.assign(mesh_.n_owned_cells(), -1);
   int n_lin = 0;
@@ -82,13 +87,13 @@ void Equilibration<dim, p>::prepare_stress()
   if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
 }
 
-template <int dim, int p>
-void Equilibration<dim, p>::solve_patches(int part)
+template <class Kind, class Patch>
+void Equilibration<Kind, Patch>::solve_patches(int part)
 {
   const mesh::Topology<dim>& topology = mesh_.topology();
   const auto in_part = [&](Index v) { return partition_.part[v] == part; };
-  Cache cache(source_, data_.n_parts());
-  Patch<dim, p> patch(mesh_, data_);
+  CellCache<Kind> cache(source_, data_.n_parts());
+  Patch patch(mesh_, data_);
   for (std::size_t i = partition_.begin[part]; i < partition_.begin[part + 1]; ++i)
   {
     const Index v = partition_.order[i];
@@ -115,11 +120,11 @@ void Equilibration<dim, p>::solve_patches(int part)
   }
 }
 
-template <int dim, int p>
-void Equilibration<dim, p>::recover_shared_cells(int part)
+template <class Kind, class Patch>
+void Equilibration<Kind, Patch>::recover_shared_cells(int part)
 {
   const std::vector<Index>& cells = partition_.shared_cells;
-  const auto prepared = std::make_unique<PreparedCell<dim, p>>();
+  const auto prepared = std::make_unique<Cell>();
   for (std::size_t i = part; i < cells.size(); i += partition_.size())
   {
     source_.prepare(cells[i], *prepared, false);
@@ -127,32 +132,18 @@ void Equilibration<dim, p>::recover_shared_cells(int part)
   }
 }
 
-/// sigma = sum of the patch stresses of the cell's vertices: the data of the cell problem add up, psi_a to 1.
-/// Not of ghosts, whose other patches are elsewhere.
-template <int dim, int p>
-void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prepared, const Shares& shares)
+/// sigma = sum of the patch stresses of the cell's vertices. Not of ghosts, whose other patches are
+/// elsewhere.
+template <class Kind, class Patch>
+void Equilibration<Kind, Patch>::recover(Index cell, const Cell& prepared, const Shares& shares)
 {
   if (cell >= mesh_.n_owned_cells()) return;
   constexpr int m = S::multiplier;
-  const SortedCell<dim>& sorted = prepared.sorted;
   const std::size_t size = stress_.block_size();
   for (int problem = with_dis_ ? 0 : 1; problem < (with_dis_ ? data_.n_parts() : 2); ++problem)
   {
     if (problem > 0 && stress_.lin_block[cell] < 0) return;
-    DenseVector<S::u> r_u;
-    if (problem == 0) r_u = prepared.divergence;
-    Tensor<dim> w = Tensor<dim>::Zero();
-    typename CellOperator<dim, p>::FacetVectors mu;
-    for (int a = 0; a <= dim; ++a)
-    {
-      if (problem == 0) add_multiple(r_u, 1, prepared.body[a]);
-      if (problem > 0 && !data_.on_contact(sorted.vertices[a])) continue;
-      const CellShare<dim, p>& share = shares[a][problem];
-      add_moments(r_u, prepared, a, share.y, problem == 0 ? 1 : -1);
-      w += share.w;
-      add_multiple(mu, 1, share.mu);
-    }
-    StressCoefficients<dim, p> sigma = prepared.op->correction(sorted, r_u, w, mu);
+    StressCoefficients<dim, p> sigma = Patch::stress(prepared, shares, problem, data_);
     if (problem == 0)
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
@@ -162,10 +153,13 @@ void Equilibration<dim, p>::recover(Index cell, const PreparedCell<dim, p>& prep
 }
 
 /// What the iterates on a mesh share.
-template <int dim, int p>
-class MeshEquilibrator : public Equilibrator<dim>::Implementation
+template <class Kind, class Patch>
+class MeshEquilibrator : public Equilibrator<Kind::dim>::Implementation
 {
  public:
+  static constexpr int dim = Kind::dim;
+  static constexpr int p = Kind::p;
+
   MeshEquilibrator(const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics)
       : form_(form),
         mesh_(form.space().mesh()),
@@ -188,8 +182,8 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
         if (mesh_.has_patch(v) && (with_dis || data.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
-    const CellSource<dim, p> source{form_, u, body_, shapes_, metrics_, turning};
-    Stress<dim> stress = Equilibration<dim, p>(mesh_, data, source, *partition, with_dis).run();
+    const CellSource<Kind> source{form_, u, body_, shapes_, metrics_, turning};
+    Stress<dim> stress = Equilibration<Kind, Patch>(mesh_, data, source, *partition, with_dis).run();
     stress.tractions = data.tractions();
     return stress;
   }
@@ -200,7 +194,7 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
   int n_threads_;
   std::vector<StressMetric> metrics_;  ///< of the regions; empty: L2 everywhere
   BodyMoments<dim, p> body_;
-  RepeatedShapes<dim, p> shapes_;
+  RepeatedShapes<typename Kind::Operator> shapes_;
   std::optional<VertexPartition> all_;         ///< of all vertices
   std::optional<VertexPartition> on_contact_;  ///< of those on Gamma_C
 };
@@ -209,9 +203,13 @@ class MeshEquilibrator : public Equilibrator<dim>::Implementation
 
 template <int dim, int p>
 std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrator(
-    const contact::NitscheForm<dim>& form, int n_threads, std::vector<StressMetric> metrics)
+    const contact::NitscheForm<dim>& form, int n_threads, bool by_rows, std::vector<StressMetric> metrics)
 {
-  return std::make_unique<detail::MeshEquilibrator<dim, p>>(form, n_threads, std::move(metrics));
+  if (by_rows)
+    return std::make_unique<detail::MeshEquilibrator<RowPatches<dim, p>, RowPatch<dim, p>>>(
+        form, n_threads, std::move(metrics));
+  return std::make_unique<detail::MeshEquilibrator<AfwPatches<dim, p>, Patch<dim, p>>>(form, n_threads,
+                                                                                       std::move(metrics));
 }
 
 }  // namespace tribound::certify

@@ -1,63 +1,56 @@
 #pragma once
 
 /// @file patch.h
-/// The minimisation problems on the patch of one vertex, method section 4: gather, condense, factor, solve.
+/// The minimisation problems on the patch of one vertex in the Arnold-Falk-Winther spaces, method section 4.
 
 #include <array>
 #include <span>
 #include <vector>
 
-#include "tribound/base/error.h"
-#include "tribound/certify/equilibrate/block_cholesky.h"
-#include "tribound/certify/equilibrate/facet_data.h"
-#include "tribound/certify/equilibrate/prepared_cell.h"
+#include "tribound/certify/equilibrate/patch_frame.h"
 
 namespace tribound::certify
 {
 
-/// The problems of a vertex: discretisation, linearisation and, for delta > 0, regularisation, numbers 0, 1
-/// and 2 of everything that all have. An object is the work space of one thread.
+/// An object is the work space of one thread.
 template <int dim, int p>
-class Patch
+class Patch : public PatchFrame<AfwPatches<dim, p>>
 {
+  using Frame = PatchFrame<AfwPatches<dim, p>>;
+
  public:
   using S = Sizes<dim, p>;
 
-  Patch(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data) : mesh_(mesh), data_(data) {}
+  Patch(const mesh::Mesh<dim>& mesh, const FacetData<dim, p>& data) : Frame(mesh, data) {}
 
-  /// Starts the patch of a vertex.
-  void begin(Index vertex);
-  /// `shares` takes the results: dis, and on Gamma_C those of the other problems.
-  void add_cell(Index cell, const PreparedCell<dim, p>& prepared, std::span<CellShare<dim, p>> shares);
   /// Solves the problems. Throws SolveError naming the place if the patch is not what method section 4
   /// requires.
   void solve();
+  /// The stress in a cell from the shares of all its patches, part by part.
+  [[nodiscard]] static StressCoefficients<dim, p> stress(const PreparedCell<dim, p>& cell,
+                                                         const CellShares<CellShare<dim, p>, dim>& shares,
+                                                         int problem, const FacetData<dim, p>& data);
 
  private:
-  static constexpr int max_problems = 3;
-
   using Operator = CellOperator<dim, p>;
   using UVector = typename Operator::UVector;
   using FacetVector = DenseVector<S::block>;
   using FacetVectors = typename Operator::FacetVectors;
   using RigidVector = std::array<double, S::rigid>;
-
-  struct CellPart
-  {
-    int vertex;                       ///< the patch's vertex in the sorted cell: also its outer facet
-    std::array<int, dim + 1> facets;  ///< index in `facets_`, -1 for the outer one
-    const PreparedCell<dim, p>* prepared;
-    std::span<CellShare<dim, p>> shares;
-    const OuterElimination<dim, p>* outer;  ///< of the cell's shape, or `own_outer`
-    OuterElimination<dim, p> own_outer;
-    std::array<FacetVector, max_problems> outer_load;  ///< U(o, o)^{-T} g_o
-  };
-
-  struct PatchFacet
-  {
-    Index number;
-    double scale;  ///< |F| / |Fhat|
-  };
+  using Frame::cells_;
+  using Frame::data_;
+  using Frame::facets_;
+  using Frame::failure;
+  using Frame::matrix_;
+  using Frame::max_problems;
+  using Frame::mesh_;
+  using Frame::n_cells_;
+  using Frame::n_problems_;
+  using Frame::size_;
+  using Frame::traction;
+  using Frame::vertex_;
+  using Frame::x_;
+  using typename Frame::CellPart;
 
   /// Integrals over the patch that y_a and w_a need; b without y_a, x relative to the vertex.
   struct Moments
@@ -69,9 +62,6 @@ class Patch
     Tensor<dim> position_position;  ///< (x_d, x_e)
   };
 
-  /// What to throw where the patch has no solution.
-  [[nodiscard]] SolveError failure() const;
-  void order_facets();
   /// In patch_compatibility.templates.h, as what it calls: Z_a, y_a and w_a.
   void make_compatible();
   void find_rigid_motions();
@@ -80,7 +70,6 @@ class Patch
   void find_divergence_part(const Moments& moments);
   void find_skew_part(const Moments& moments);
   void assemble();
-  void condense(CellPart& part);
   void assemble_load(CellPart& part, int problem);
   void decouple_fixed_components(int facet);
   void fix_rigid_motions();
@@ -92,26 +81,13 @@ class Patch
   [[nodiscard]] FacetVector trace(int facet, int motion, bool fixed) const;
   [[nodiscard]] int holding_facet(int motion) const;
   [[nodiscard]] FacetVector moments_on_facet(int facet, int motion) const;
-  [[nodiscard]] int local_vertex(Index facet) const;
   [[nodiscard]] double traction_work(int problem, int motion) const;
   [[nodiscard]] double reaction_work(int motion) const;
-  [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;
 
-  const mesh::Mesh<dim>& mesh_;
-  const FacetData<dim, p>& data_;
-  Index vertex_ = 0;
-  int n_problems_ = 0;  ///< 1 off Gamma_C: there the data of lin and reg vanish
-  double size_ = 0;     ///< of the patch
-  int n_cells_ = 0;
-  std::vector<CellPart> cells_;     ///< the first n_cells_ of them
-  std::vector<PatchFacet> facets_;  ///< around the vertex, in the order of elimination
-  std::vector<PatchFacet> found_;   ///< the same as they were found
   std::vector<FixedFacet<dim>> fixed_facets_;
   RigidMotions<dim> motions_{Point<dim>::Zero(), 1.0, {}};
   std::array<RigidField<dim>, max_problems> y_;
   std::array<Tensor<dim>, max_problems> w_;
-  BlockCholesky<S::block> matrix_;
-  std::array<std::vector<FacetVector>, max_problems> x_;
   std::array<std::vector<FacetVector>, S::pairs> fixed_trace_;  ///< of the almost admissible rotations
   std::array<std::vector<FacetVector>, S::pairs> almost_rigid_;
 };

@@ -14,44 +14,9 @@ namespace tribound::certify
 {
 
 template <int dim, int p>
-void Patch<dim, p>::begin(Index vertex)
-{
-  vertex_ = vertex;
-  n_problems_ = data_.on_contact(vertex) ? data_.n_parts() : 1;
-  size_ = 0;
-  n_cells_ = 0;
-  found_.clear();
-  fixed_facets_.clear();
-}
-
-template <int dim, int p>
-void Patch<dim, p>::add_cell(Index cell, const PreparedCell<dim, p>& prepared,
-                             std::span<CellShare<dim, p>> shares)
-{
-  const SortedCell<dim>& sorted = prepared.sorted;
-  if (n_cells_ == static_cast<int>(cells_.size()))
-    cells_.push_back({0, {}, nullptr, shares, nullptr, {}, {}});
-  CellPart& part = cells_[n_cells_++];
-  part.vertex = sorted.find(vertex_);
-  part.prepared = &prepared;
-  part.shares = shares;
-  const auto& numbers = mesh_.topology().cell_facets[cell];
-  for (int f = 0; f <= dim; ++f)
-  {
-    part.facets[f] = -1;
-    if (f == part.vertex) continue;
-    const Index facet = numbers[sorted.local[f]];
-    const auto known = std::ranges::find(found_, facet, &PatchFacet::number);
-    part.facets[f] = static_cast<int>(known - found_.begin());
-    if (known == found_.end()) found_.push_back({facet, sorted.facet_scale(f)});
-  }
-  size_ = std::max(size_, 1 / sorted.grad_norm[part.vertex]);  // the height of the cell above the vertex
-}
-
-template <int dim, int p>
 void Patch<dim, p>::solve()
 {
-  order_facets();
+  this->order_facets();
   make_compatible();
   assemble();
   fix_rigid_motions();
@@ -61,32 +26,6 @@ void Patch<dim, p>::solve()
   if (motions_.n_almost() > 0) balance_almost_rigid();
   for (int problem = 0; problem < n_problems_; ++problem)
     for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
-}
-
-template <int dim, int p>
-SolveError Patch<dim, p>::failure() const
-{
-  double flattest = 0;
-  for (int k = 0; k < n_cells_; ++k) flattest = std::max(flattest, slenderness(cells_[k].prepared->sorted));
-  return no_equilibrated_stress<dim>(mesh_.vertex(vertex_), flattest);
-}
-
-/// Renames the facets by the order of elimination.
-template <int dim, int p>
-void Patch<dim, p>::order_facets()
-{
-  matrix_.reset(static_cast<int>(found_.size()));
-  for (int k = 0; k < n_cells_; ++k)
-    for (int f = 0; f <= dim; ++f)
-      for (int g = f + 1; g <= dim; ++g)
-        if (f != cells_[k].vertex && g != cells_[k].vertex)
-          matrix_.connect(cells_[k].facets[f], cells_[k].facets[g]);
-  const std::span<const int> rank = matrix_.order();
-  for (int k = 0; k < n_cells_; ++k)
-    for (int& facet : cells_[k].facets)
-      if (facet >= 0) facet = rank[facet];
-  facets_.resize(found_.size());
-  for (std::size_t i = 0; i < found_.size(); ++i) facets_[rank[i]] = found_[i];
 }
 
 /// Coefficients of motion i in P^p(F)^d.
@@ -107,30 +46,13 @@ auto Patch<dim, p>::moments_on_facet(int facet, int motion) const -> FacetVector
 }
 
 template <int dim, int p>
-int Patch<dim, p>::local_vertex(Index facet) const
-{
-  const auto& vertices = mesh_.topology().facets[facet];
-  return static_cast<int>(std::ranges::find(vertices, vertex_) - vertices.begin());
-}
-
-/// Moments of the traction of the dis (0), lin (1) or reg (2) problem, or null where there is none.
-template <int dim, int p>
-auto Patch<dim, p>::traction(Index facet, int problem) const -> const typename FacetData<dim, p>::FacetVector*
-{
-  if (!data_.is_boundary(facet)) return nullptr;
-  const auto* moments = problem == 0   ? data_.discretisation(facet)
-                        : problem == 1 ? data_.linearisation(facet)
-                                       : data_.regularisation(facet);
-  return moments ? &(*moments)[local_vertex(facet)] : nullptr;
-}
-
-template <int dim, int p>
 void Patch<dim, p>::assemble()
 {
   for (int problem = 0; problem < n_problems_; ++problem) x_[problem].assign(facets_.size(), {});
   for (int k = 0; k < n_cells_; ++k)
   {
-    condense(cells_[k]);
+    this->eliminate_outer(cells_[k]);
+    this->add_to_matrix(cells_[k]);
     for (int problem = 0; problem < n_problems_; ++problem) assemble_load(cells_[k], problem);
   }
   if (motions_.n_almost() > 0) load_almost_rigid();
@@ -141,26 +63,6 @@ void Patch<dim, p>::assemble()
       if (const auto* t = traction(facets_[i].number, problem)) add_multiple(x_[problem][i], -1, *t);
     decouple_fixed_components(static_cast<int>(i));
   }
-}
-
-/// Eliminates the multiplier of the outer facet.
-template <int dim, int p>
-void Patch<dim, p>::condense(CellPart& part)
-{
-  const PreparedCell<dim, p>& cell = *part.prepared;
-  const int o = part.vertex;
-  part.outer = cell.shape ? &cell.shape->outer[o] : &part.own_outer;
-  if (!cell.shape) part.own_outer.factor(*cell.op, cell.sorted, o);
-  for (int f = 0; f <= dim; ++f)
-    for (int g = 0; g <= dim; ++g)
-    {
-      if (f == o || g == o || part.facets[f] > part.facets[g]) continue;
-      auto& block = matrix_.block(part.facets[f], part.facets[g]);
-      if (cell.shape)
-        add_multiple(block, 1, cell.shape->reduced[o][f][g]);
-      else
-        part.own_outer.add_block(*cell.op, f, g, block);
-    }
 }
 
 /// g = N G - C^T (B B^T)^{-1} r with the outer facet eliminated. With div G = psi_a div sigma + sigma grad
@@ -262,6 +164,28 @@ void Patch<dim, p>::recover(CellPart& part, int problem)
   solve_upper<S::block>(part.outer->rows.data() + o * stride, row, part.outer->reciprocal.data(), outer);
   share.y = y_[problem];
   share.w = w_[problem];
+}
+
+/// The data of the cell problem add up, psi_a to 1.
+template <int dim, int p>
+StressCoefficients<dim, p> Patch<dim, p>::stress(const PreparedCell<dim, p>& cell,
+                                                 const CellShares<CellShare<dim, p>, dim>& shares,
+                                                 int problem, const FacetData<dim, p>& data)
+{
+  UVector r_u;
+  if (problem == 0) r_u = cell.divergence;
+  Tensor<dim> w = Tensor<dim>::Zero();
+  FacetVectors mu;
+  for (int a = 0; a <= dim; ++a)
+  {
+    if (problem == 0) add_multiple(r_u, 1, cell.body[a]);
+    if (problem > 0 && !data.on_contact(cell.sorted.vertices[a])) continue;
+    const CellShare<dim, p>& share = shares[a][problem];
+    add_moments(r_u, cell, a, share.y, problem == 0 ? 1 : -1);
+    w += share.w;
+    add_multiple(mu, 1, share.mu);
+  }
+  return cell.op->correction(cell.sorted, r_u, w, mu);
 }
 
 }  // namespace tribound::certify

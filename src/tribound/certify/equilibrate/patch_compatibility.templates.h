@@ -23,6 +23,7 @@ void Patch<dim, p>::make_compatible()
 template <int dim, int p>
 void Patch<dim, p>::find_rigid_motions()
 {
+  fixed_facets_.clear();
   for (const auto& [facet, scale] : facets_)
   {
     if (!data_.is_boundary(facet) || !data_.fixes_any(facet)) continue;

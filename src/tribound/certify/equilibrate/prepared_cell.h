@@ -10,24 +10,35 @@
 
 #include "tribound/certify/equilibrate/repeated_shapes.h"
 #include "tribound/certify/equilibrate/rigid.h"
+#include "tribound/certify/equilibrate/row_operator.h"
+#include "tribound/certify/equilibrate/stress.h"
 
 namespace tribound::certify
 {
 
+/// What all kinds of patches need of a cell.
+template <class Operator>
+struct ShapedCell
+{
+  static constexpr int dim = Operator::dimension;
+
+  SortedCell<dim> sorted;
+  const RepeatedShape<Operator>* shape;  ///< null if the cell's shape does not come often
+  const Operator* op;                    ///< of the shape, or `own`
+  std::unique_ptr<Operator> own;
+  double one;  ///< moment of 1 on chi_0; it has no others
+};
+
+/// Of the patches in the Arnold-Falk-Winther spaces.
 template <int dim, int p>
-struct PreparedCell
+struct PreparedCell : ShapedCell<CellOperator<dim, p>>
 {
   using S = Sizes<dim, p>;
   using UVector = DenseVector<S::u>;
 
-  SortedCell<dim> sorted;
-  const RepeatedShape<dim, p>* shape;  ///< null if the cell's shape does not come often
-  const CellOperator<dim, p>* op;      ///< of the shape, or `own`
-  std::unique_ptr<CellOperator<dim, p>> own;
   DiscreteStress<dim, p> sigma;       ///< sigma(u^k)
   UVector divergence;                 ///< moments of div sigma(u^k)
   std::array<UVector, dim + 1> body;  ///< moments of psi_a f
-  double one;                         ///< moment of 1 on chi_0; it has no others
   /// [d]: moments of x_d - x_d(vertex 0), on chi of degree <= 1; it has no others
   std::array<std::array<double, S::affine>, dim> coordinates;
 };
@@ -41,8 +52,29 @@ struct CellShare
   Tensor<dim> w;                                   ///< w_a (p = 1)
 };
 
-/// The shares of all vertices of a cell in all parts.
+/// Of the patches row by row. Column c of a matrix belongs to row c of the stress.
 template <int dim, int p>
+struct RowCell : ShapedCell<RowOperator<dim, p>>
+{
+  using CellRows = typename RowOperator<dim, p>::CellRows;
+
+  DiscreteStress<dim, p> sigma;        ///< sigma(u^k)
+  CellRows divergence;                 ///< moments of div sigma(u^k)
+  std::array<CellRows, dim + 1> body;  ///< moments of psi_a f
+  /// [f]: coefficients of sigma(u^k) n |grad lambda_f|^{1/2} on chi
+  std::array<CellRows, dim + 1> normal;
+};
+
+/// The same as CellShare.
+template <int dim, int p>
+struct RowShare
+{
+  typename RowOperator<dim, p>::AllFacetRows mu;
+  Point<dim> y;  ///< y_a, a constant
+};
+
+/// The shares of all vertices of a cell in all parts.
+template <class Share, int dim>
 class CellShares
 {
  public:
@@ -51,26 +83,49 @@ class CellShares
   }
 
   /// By vertex: its shares in the parts.
-  [[nodiscard]] std::span<CellShare<dim, p>> operator[](int vertex)
+  [[nodiscard]] std::span<Share> operator[](int vertex)
   {
     return std::span(shares_).subspan(vertex * n_parts_, n_parts_);
   }
-  [[nodiscard]] std::span<const CellShare<dim, p>> operator[](int vertex) const
+  [[nodiscard]] std::span<const Share> operator[](int vertex) const
   {
     return std::span(shares_).subspan(vertex * n_parts_, n_parts_);
   }
 
  private:
   std::size_t n_parts_;
-  std::vector<CellShare<dim, p>> shares_;
+  std::vector<Share> shares_;
 };
 
-/// Fills in `one` and `coordinates`; `sorted` is known.
+/// The kinds of patches: what they are told of a cell, what they leave in it, and what they know of a facet.
+template <int dim_, int p_>
+struct AfwPatches
+{
+  static constexpr int dim = dim_;
+  static constexpr int p = p_;
+  static constexpr PatchStress patches = PatchStress::afw;
+  using Operator = CellOperator<dim, p>;
+  using Cell = PreparedCell<dim, p>;
+  using Share = CellShare<dim, p>;
+  using FacetUnknown = DenseVector<Operator::block>;
+};
+template <int dim_, int p_>
+struct RowPatches
+{
+  static constexpr int dim = dim_;
+  static constexpr int p = p_;
+  static constexpr PatchStress patches = PatchStress::rows;
+  using Operator = RowOperator<dim, p>;
+  using Cell = RowCell<dim, p>;
+  using Share = RowShare<dim, p>;
+  using FacetUnknown = typename Operator::FacetRows;
+};
+
+/// Fills in `coordinates`; `sorted` is known.
 template <int dim, int p>
-void find_moments(PreparedCell<dim, p>& cell)
+void find_coordinates(PreparedCell<dim, p>& cell)
 {
   const auto& hat = reference<dim, p>().hat_moment;
-  cell.one = moment_of_one<dim, p>(cell.sorted);
   const double scale = std::sqrt(cell.sorted.det);
   for (int d = 0; d < dim; ++d)
     for (int j = 0; j < Sizes<dim, p>::affine; ++j)

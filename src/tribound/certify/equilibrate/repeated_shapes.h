@@ -17,45 +17,45 @@ namespace tribound::certify
 
 /// The outer facet o of a patch's cell eliminated: S(o, o) = U(o, o)^T U(o, o), U(o, f) = U(o, o)^{-T} S(o,
 /// f).
-template <int dim, int p>
+template <class Operator>
 struct OuterElimination
 {
-  using S = Sizes<dim, p>;
-  using Operator = CellOperator<dim, p>;
+  static constexpr int dim = Operator::dimension;
+  static constexpr int n = Operator::block;
   static constexpr int stride = Operator::facet_stride;
   static constexpr int row = Operator::all_facets;
 
-  Dense<S::block, row> rows;                ///< U(o, .)
-  std::array<double, S::block> reciprocal;  ///< of the diagonal of U(o, o)
+  Dense<n, row> rows;                ///< U(o, .)
+  std::array<double, n> reciprocal;  ///< of the diagonal of U(o, o)
 
   /// Throws SolveError for a cell that is too flat.
   void factor(const Operator& op, const SortedCell<dim>& cell, int o)
   {
-    std::copy_n(op.schur(o), S::block * row, rows.data());
+    std::copy_n(op.schur(o), n * row, rows.data());
     double* const pivot = rows.data() + o * stride;
-    if (!cholesky<S::block>(pivot, row, reciprocal.data()))
+    if (!cholesky<n>(pivot, row, reciprocal.data()))
       throw no_equilibrated_stress<dim>(cell.origin, slenderness(cell));
     for (int f = 0; f <= dim; ++f)
-      if (f != o)
-        solve_transposed<S::block, stride>(pivot, row, reciprocal.data(), rows.data() + f * stride, row);
+      if (f != o) solve_transposed<n, stride>(pivot, row, reciprocal.data(), rows.data() + f * stride, row);
   }
 
   /// target += S(f, g) - S(f, o) S(o, o)^{-1} S(o, g).
-  void add_block(const Operator& op, int f, int g, Dense<S::block, S::block>& target) const
+  void add_block(const Operator& op, int f, int g, Dense<n, n>& target) const
   {
-    for (int i = 0; i < S::block; ++i)
+    for (int i = 0; i < n; ++i)
       for (int j = 0; j < stride; j += lanes)
         lanes_at(target.row(i) + j) += lanes_at(op.schur(f) + i * row + g * stride + j);
-    subtract_transposed_product<S::block, stride, S::block>(target.data(), stride, rows.data() + f * stride,
-                                                            row, rows.data() + g * stride, row);
+    subtract_transposed_product<n, stride, n>(target.data(), stride, rows.data() + f * stride, row,
+                                              rows.data() + g * stride, row);
   }
 };
 
 /// Everything of a cell that does not change when it is moved.
-template <int dim, int p>
+template <class Operator>
 struct RepeatedShape
 {
-  using S = Sizes<dim, p>;
+  static constexpr int dim = Operator::dimension;
+  static constexpr int n = Operator::block;
 
   explicit RepeatedShape(const SortedCell<dim>& cell, const StressMetric& metric = {})
   {
@@ -70,10 +70,10 @@ struct RepeatedShape
     }
   }
 
-  CellOperator<dim, p> op;
-  std::array<OuterElimination<dim, p>, dim + 1> outer;
+  Operator op;
+  std::array<OuterElimination<Operator>, dim + 1> outer;
   /// [o][f][g]: S(f, g) without the outer facet o
-  std::array<std::array<std::array<Dense<S::block, S::block>, dim + 1>, dim + 1>, dim + 1> reduced;
+  std::array<std::array<std::array<Dense<n, n>, dim + 1>, dim + 1>, dim + 1> reduced;
 };
 
 /// The cells of a mesh sorted by shape.
@@ -91,10 +91,12 @@ template <int dim>
 [[nodiscard]] ShapeClasses classify_shapes(const mesh::Mesh<dim>& mesh, bool by_region = false);
 
 /// The shapes that come often in a mesh.
-template <int dim, int p>
+template <class Operator>
 class RepeatedShapes
 {
  public:
+  static constexpr int dim = Operator::dimension;
+
   /// `metrics`: of the regions; empty: L2 everywhere.
   explicit RepeatedShapes(const mesh::Mesh<dim>& mesh, std::span<const StressMetric> metrics = {})
   {
@@ -105,7 +107,7 @@ class RepeatedShapes
       if (classes.count[i] < often) continue;
       kept[i] = static_cast<int>(shapes_.size());
       const Index first = classes.first[i];
-      shapes_.push_back(std::make_unique<RepeatedShape<dim, p>>(
+      shapes_.push_back(std::make_unique<RepeatedShape<Operator>>(
           make_sorted_cell(mesh, first), metrics.empty() ? StressMetric{} : metrics[mesh.region(first)]));
     }
     number_ = std::move(classes.number);
@@ -114,7 +116,7 @@ class RepeatedShapes
   }
 
   /// Null for a cell whose shape does not come often.
-  [[nodiscard]] const RepeatedShape<dim, p>* find(Index cell) const
+  [[nodiscard]] const RepeatedShape<Operator>* find(Index cell) const
   {
     return number_[cell] < 0 ? nullptr : shapes_[number_[cell]].get();
   }
@@ -123,7 +125,7 @@ class RepeatedShapes
   static constexpr int often = 64;  ///< cells over which the memory of a shape is spread
 
   std::vector<int> number_;  ///< per cell: index in shapes_, or -1
-  std::vector<std::unique_ptr<RepeatedShape<dim, p>>> shapes_;
+  std::vector<std::unique_ptr<RepeatedShape<Operator>>> shapes_;
 };
 
 }  // namespace tribound::certify

@@ -220,6 +220,32 @@ void solve_upper(const double* u, int stride, const double* reciprocal, double* 
   }
 }
 
+/// B = U^{-1} B with B n x m; m is a multiple of `lanes`.
+template <int n, int m>
+void solve_upper(const double* u, int u_stride, const double* reciprocal, double* b, int b_stride)
+{
+  for (int i = n - 1; i >= 0; --i)
+    for (int j = 0; j < m; j += lanes)
+    {
+      Lanes sum = lanes_at(b + i * b_stride + j);
+      for (int k = i + 1; k < n; ++k) sum -= u[i * u_stride + k] * lanes_at(b + k * b_stride + j);
+      lanes_at(b + i * b_stride + j) = reciprocal[i] * sum;
+    }
+}
+
+/// C -= A B with C n x m, A n x k and B k x m; m is a multiple of `lanes`.
+template <int n, int m, int k>
+void subtract_product(double* c, int c_stride, const double* a, int a_stride, const double* b, int b_stride)
+{
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; j += lanes)
+    {
+      Lanes sum = lanes_at(c + i * c_stride + j);
+      for (int l = 0; l < k; ++l) sum -= a[i * a_stride + l] * lanes_at(b + l * b_stride + j);
+      lanes_at(c + i * c_stride + j) = sum;
+    }
+}
+
 /// y -= A^T x with A k x m; m is a multiple of `lanes`.
 template <int k, int m>
 void subtract_transposed_times(double* y, const double* a, int stride, const double* x)

@@ -4,12 +4,27 @@
 /// The equilibrated stress: piecewise polynomials of degree p, coefficients cell by cell.
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "tribound/base/types.h"
 
 namespace tribound::certify
 {
+
+/// The space and the norm in which the stress of a patch is the nearest to its target.
+enum class PatchStress
+{
+  rows,           ///< not symmetric, row by row, L2: enough for the bound of the residual
+  afw,            ///< weakly symmetric, L2
+  afw_compliance  ///< weakly symmetric, the norm of C^{-1}, C the elasticity tensor of each cell
+};
+
+/// The name of the space, as in a case.
+[[nodiscard]] constexpr std::string_view to_string(PatchStress patches)
+{
+  return patches == PatchStress::rows ? "rows" : "afw";
+}
 
 /// sigma_h = sigma_dis + sigma_lin (+ sigma_reg, method section 7). On each cell, entry (r, c) has
 /// coefficients in the orthonormal basis of P^p(T), phi_j(xhat) / sqrt(det J) with the cell's vertices in
@@ -20,6 +35,7 @@ struct Stress
 {
   int degree = 0;
   int n = 0;                   ///< dim P^p
+  PatchStress patches{};       ///< `afw` in both norms of that space
   std::vector<double> dis;     ///< all cells that the rank owns
   std::vector<int> lin_block;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
   std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
@@ -41,6 +57,8 @@ struct Stress
     }
   } tractions;
 
+  /// Weakly.
+  [[nodiscard]] bool is_symmetric() const { return degree > 1 && patches != PatchStress::rows; }
   [[nodiscard]] std::size_t block_size() const { return static_cast<std::size_t>(dim) * dim * n; }
   [[nodiscard]] std::span<const double> dis_in(Index cell) const
   {

@@ -17,4 +17,10 @@ template <int dim>
 [[nodiscard]] std::vector<double> residual(const NitscheForm<dim>& form, std::span<const double> u,
                                            std::span<const Point<dim>> t);
 
+/// The same at all degrees of freedom: at fixed ones minus the force of the support.
+template <int dim>
+[[nodiscard]] std::vector<double> unconstrained_residual(const NitscheForm<dim>& form,
+                                                         std::span<const double> u,
+                                                         std::span<const Point<dim>> t);
+
 }  // namespace tribound::contact

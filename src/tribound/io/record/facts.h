@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 #include "tribound/problem/units.h"
@@ -28,7 +29,8 @@ struct CaseFacts
   std::string file;
   int dimension = 0;
   int degree = 0;
-  std::string friction;  ///< friction_name(); empty without contact
+  certify::PatchStress stress = certify::PatchStress::rows;  ///< of the bound
+  std::string friction;                                      ///< friction_name(); empty without contact
   double gamma0 = 0.0;
   problem::Units units{};
   /// The units of the [[quantity]] tables, by name; empty for pure numbers, and where no units are named.

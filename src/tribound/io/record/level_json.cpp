@@ -25,7 +25,7 @@ Json json(const std::optional<certify::IdentityDefects>& identities)
           {"jump", identities->jump},
           {"neumann", identities->neumann},
           {"contact", identities->contact},
-          {"symmetry", identities->symmetry}};
+          {"symmetry", identities->is_symmetric ? Json(identities->symmetry) : Json(nullptr)}};
 }
 
 Json json(const Resultants& resultants)
@@ -110,8 +110,7 @@ Json balance_json(const certify::Balance& balance)
                               {"name", row.name},
                               {"source", row.source},
                               {"force", row.force},
-                              {"moment", row.moment ? Json(*row.moment) : Json(nullptr)}});
-  object["note"] = text_or_null(certify::moment_note(balance));
+                              {"moment", row.moment}});
   return object;
 }
 

@@ -43,7 +43,7 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   if (certify::is_bound(view.verdict.status))
   {
     record.bound = level.estimate.bound();
-    record.balance = certify::balance<dim>(form, level.stress, moment_about);
+    record.balance = certify::balance<dim>(form, level.u, level.traction, moment_about);
   }
   else  // a violated identity means no bound, and none is shown
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};

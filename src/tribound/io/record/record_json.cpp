@@ -165,6 +165,7 @@ Json certificate(const RunRecord& run)
               {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},
               {"p", run.facts.degree},
+              {"stress", certify::to_string(run.facts.stress)},
               {"friction", run.facts.friction},
               {"gamma0", run.facts.gamma0},
               {"units", units_json(run.facts)}};

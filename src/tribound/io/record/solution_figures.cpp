@@ -208,7 +208,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     add_moments<dim>(part, form, t, level.traction, tag);
     const problem::FrictionCone friction = cone(contact->law);
     const bool coefficient_alone = friction.strength == nullptr && friction.coefficient > 0;
-    if (coefficient_alone && slides[tag] && adapt::bound_holds(level, form.space().degree()))
+    if (coefficient_alone && slides[tag] && adapt::bound_holds(level))
       part.coefficient = friction.coefficient;
     figures.boundary_contact.push_back(std::move(part));
   }
