@@ -64,21 +64,23 @@ adapt::PathProgram beyond_the_peak()
           .enough_damage = 0.95};
 }
 
-/// Its peak is within a hundredth of that on a mesh that is fine from the beginning.
+/// Its peak is within a hundredth of that on a mesh that is fine from the beginning. With these meshes; on
+/// others a step beyond the peak may stay, as below.
 TEST(Transfer, APeakIsThatOfAFineMesh)
 {
   const adapt::PathProgram program = beyond_the_peak();
-  const adapt::Method method = method_of(2);
+  adapt::Method method = method_of(2);
+  method.stress = certify::PatchStress::afw;
   const mesh::Mesh<2> coarse(peeled_mesh<2>(false));
   const problem::Problem<2> problem = torn().on(coarse);
   adapt::LoadPath<2> on_fine(problem, method, {}, refined<2>(refined<2>(coarse)));
   const adapt::PathEnd fine = adapt::follow<2>(on_fine, program, {}, {});
   ASSERT_TRUE(fine.peak);
 
-  adapt::LoadPath<2> path(problem, method, {.tolerance = 0.05}, mesh::Mesh<2>(peeled_mesh<2>(false)));
+  adapt::LoadPath<2> path(problem, method, {.tolerance = 0.06}, mesh::Mesh<2>(peeled_mesh<2>(false)));
   adapt::PathEnd end;
   const certify::Verdict verdict =
-      adapt::transfer<2>(path, program, adapt::make_strategy<2>({.tolerance = 0.05, .max_levels = 12}),
+      adapt::transfer<2>(path, program, adapt::make_strategy<2>({.tolerance = 0.06, .max_levels = 12}),
                          {.path_end = [&](const adapt::PathEnd& e) { end = e; }});
   EXPECT_EQ(end.failure, "");
   EXPECT_TRUE(certify::is_bound(verdict.status)) << verdict.reason;
