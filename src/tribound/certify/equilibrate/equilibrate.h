@@ -24,16 +24,15 @@ template <int dim>
 class Equilibrator
 {
  public:
-  /// The form must outlive the object.
+  /// `kind`: of the patches. The form must outlive the object.
   Equilibrator(const contact::NitscheForm<dim>& form, PatchStress kind, int n_threads = 0);
   ~Equilibrator();
   Equilibrator(const Equilibrator&) = delete;
   Equilibrator& operator=(const Equilibrator&) = delete;
 
-  /// sigma_dis and sigma_lin on vertex patches in the Arnold-Falk-Winther spaces of the degree of the space
-  /// (method section 4). For delta > 0 Newton's method linearises T_delta: then sigma_lin has the traction
-  /// psi_a (t^k - T_delta(u^k)) on Gamma_C, and a third part sigma_reg, method section 7, has
-  /// psi_a (T_delta(u^k) - T(u^k)).
+  /// sigma_dis and sigma_lin on vertex patches of the degree of the space (method section 4). For delta > 0
+  /// Newton's method linearises T_delta: then sigma_lin has the traction psi_a (t^k - T_delta(u^k)) on
+  /// Gamma_C, and a third part sigma_reg, method section 7, has psi_a (T_delta(u^k) - T(u^k)).
   [[nodiscard]] Stress<dim> operator()(std::span<const double> u, std::span<const Point<dim>> t,
                                        double delta = 0);
   /// The same sigma_lin for delta = 0 without sigma_dis (`dis` is empty): only patches around vertices on
@@ -41,7 +40,7 @@ class Equilibrator
   [[nodiscard]] Stress<dim> linearisation(std::span<const double> u, std::span<const Point<dim>> t);
   /// sigma_dis with the traction t in place of T(u), of a u that is in equilibrium with t. `turning` is
   /// K_{T,a}, d + 1 skew tensors per cell by its vertices in ascending order, adding up to 0 on every cell,
-  /// or empty: b + K_{T,a} (x - x_T) in place of b (certify/energy/edge_moments.h).
+  /// or empty (row by row it must be): b + K_{T,a} (x - x_T) in place of b (certify/energy/edge_moments.h).
   [[nodiscard]] Stress<dim> balanced(std::span<const double> u, std::span<const Point<dim>> t,
                                      std::span<const Tensor<dim>> turning);
 

@@ -26,10 +26,11 @@ namespace detail
 /// The stress of one iterate. The patches write their shares into the cells, and a cell with all of them
 /// gives its stress. Every thread has a part of the vertices; cells with vertices in several of them come
 /// last. `with_dis`: the partition has all vertices; otherwise those on Gamma_C, which give sigma_lin.
-template <class Kind, class Patch>
+template <class Patch>
 class Equilibration
 {
  public:
+  using Kind = typename Patch::Kind;
   static constexpr int dim = Kind::dim;
   static constexpr int p = Kind::p;
 
@@ -71,8 +72,8 @@ class Equilibration
   std::vector<Shares> shares_;  ///< of the shared cells
 };
 
-template <class Kind, class Patch>
-void Equilibration<Kind, Patch>::prepare_stress()
+template <class Patch>
+void Equilibration<Patch>::prepare_stress()
 {
   stress_.degree = p;
   stress_.n = S::stress;
@@ -87,8 +88,8 @@ void Equilibration<Kind, Patch>::prepare_stress()
   if (data_.n_parts() > 2) stress_.reg.resize(stress_.lin.size());
 }
 
-template <class Kind, class Patch>
-void Equilibration<Kind, Patch>::solve_patches(int part)
+template <class Patch>
+void Equilibration<Patch>::solve_patches(int part)
 {
   const mesh::Topology<dim>& topology = mesh_.topology();
   const auto in_part = [&](Index v) { return partition_.part[v] == part; };
@@ -120,8 +121,8 @@ void Equilibration<Kind, Patch>::solve_patches(int part)
   }
 }
 
-template <class Kind, class Patch>
-void Equilibration<Kind, Patch>::recover_shared_cells(int part)
+template <class Patch>
+void Equilibration<Patch>::recover_shared_cells(int part)
 {
   const std::vector<Index>& cells = partition_.shared_cells;
   const auto prepared = std::make_unique<Cell>();
@@ -134,8 +135,8 @@ void Equilibration<Kind, Patch>::recover_shared_cells(int part)
 
 /// sigma = sum of the patch stresses of the cell's vertices. Not of ghosts, whose other patches are
 /// elsewhere.
-template <class Kind, class Patch>
-void Equilibration<Kind, Patch>::recover(Index cell, const Cell& prepared, const Shares& shares)
+template <class Patch>
+void Equilibration<Patch>::recover(Index cell, const Cell& prepared, const Shares& shares)
 {
   if (cell >= mesh_.n_owned_cells()) return;
   constexpr int m = S::multiplier;
@@ -153,10 +154,11 @@ void Equilibration<Kind, Patch>::recover(Index cell, const Cell& prepared, const
 }
 
 /// What the iterates on a mesh share.
-template <class Kind, class Patch>
-class MeshEquilibrator : public Equilibrator<Kind::dim>::Implementation
+template <class Patch>
+class MeshEquilibrator : public Equilibrator<Patch::Kind::dim>::Implementation
 {
  public:
+  using Kind = typename Patch::Kind;
   static constexpr int dim = Kind::dim;
   static constexpr int p = Kind::p;
 
@@ -183,7 +185,7 @@ class MeshEquilibrator : public Equilibrator<Kind::dim>::Implementation
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
     const CellSource<Kind> source{form_, u, body_, shapes_, metrics_, turning};
-    Stress<dim> stress = Equilibration<Kind, Patch>(mesh_, data, source, *partition, with_dis).run();
+    Stress<dim> stress = Equilibration<Patch>(mesh_, data, source, *partition, with_dis).run();
     stress.tractions = data.tractions();
     return stress;
   }
@@ -206,10 +208,8 @@ std::unique_ptr<typename Equilibrator<dim>::Implementation> make_mesh_equilibrat
     const contact::NitscheForm<dim>& form, int n_threads, bool by_rows, std::vector<StressMetric> metrics)
 {
   if (by_rows)
-    return std::make_unique<detail::MeshEquilibrator<RowPatches<dim, p>, RowPatch<dim, p>>>(
-        form, n_threads, std::move(metrics));
-  return std::make_unique<detail::MeshEquilibrator<AfwPatches<dim, p>, Patch<dim, p>>>(form, n_threads,
-                                                                                       std::move(metrics));
+    return std::make_unique<detail::MeshEquilibrator<RowPatch<dim, p>>>(form, n_threads, std::move(metrics));
+  return std::make_unique<detail::MeshEquilibrator<Patch<dim, p>>>(form, n_threads, std::move(metrics));
 }
 
 }  // namespace tribound::certify

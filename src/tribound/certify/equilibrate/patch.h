@@ -46,7 +46,6 @@ class Patch : public PatchFrame<AfwPatches<dim, p>>
   using Frame::mesh_;
   using Frame::n_cells_;
   using Frame::n_problems_;
-  using Frame::size_;
   using Frame::traction;
   using Frame::vertex_;
   using Frame::x_;

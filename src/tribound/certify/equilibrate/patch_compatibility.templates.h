@@ -31,7 +31,10 @@ void Patch<dim, p>::find_rigid_motions()
     for (int v = 0; v < dim; ++v) fixed.vertices[v] = mesh_.vertex(mesh_.topology().facets[facet][v]);
     for (int c = 0; c < dim; ++c) fixed.fixed[c] = data_.fixes(facet, c);
   }
-  motions_ = RigidMotions<dim>(mesh_.vertex(vertex_), size_, fixed_facets_);
+  double size = 0;  // the largest height of a cell above the vertex
+  for (int k = 0; k < n_cells_; ++k)
+    size = std::max(size, 1 / cells_[k].prepared->sorted.grad_norm[cells_[k].vertex]);
+  motions_ = RigidMotions<dim>(mesh_.vertex(vertex_), size, fixed_facets_);
 }
 
 /// (-psi_a f + sigma(u^k) grad psi_a, v)_T for v in U.

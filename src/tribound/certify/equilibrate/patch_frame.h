@@ -18,10 +18,11 @@ namespace tribound::certify
 
 /// The patch of a vertex with its problems: discretisation, linearisation and, for delta > 0, regularisation,
 /// numbers 0, 1 and 2 of everything that all have.
-template <class Kind>
+template <class Kind_>
 class PatchFrame
 {
  public:
+  using Kind = Kind_;
   static constexpr int dim = Kind::dim;
   static constexpr int p = Kind::p;
   using S = Sizes<dim, p>;
@@ -72,7 +73,6 @@ class PatchFrame
   const FacetData<dim, p>& data_;
   Index vertex_ = 0;
   int n_problems_ = 0;  ///< 1 off Gamma_C: there the data of lin and reg vanish
-  double size_ = 0;     ///< of the patch
   int n_cells_ = 0;
   std::vector<CellPart> cells_;     ///< the first n_cells_ of them
   std::vector<PatchFacet> facets_;  ///< around the vertex, in the order of elimination
@@ -86,7 +86,6 @@ void PatchFrame<Kind>::begin(Index vertex)
 {
   vertex_ = vertex;
   n_problems_ = data_.on_contact(vertex) ? data_.n_parts() : 1;
-  size_ = 0;
   n_cells_ = 0;
   found_.clear();
 }
@@ -111,7 +110,6 @@ void PatchFrame<Kind>::add_cell(Index cell, const Cell& prepared, std::span<Shar
     part.facets[f] = static_cast<int>(known - found_.begin());
     if (known == found_.end()) found_.push_back({facet, sorted.facet_scale(f)});
   }
-  size_ = std::max(size_, 1 / sorted.grad_norm[part.vertex]);  // the height of the cell above the vertex
 }
 
 template <class Kind>
