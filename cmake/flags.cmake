@@ -2,6 +2,7 @@
 
 add_library(tribound_flags INTERFACE)
 target_compile_options(tribound_flags INTERFACE $<$<CONFIG:Release>:-O3>)
+target_compile_options(tribound_flags INTERFACE -fno-math-errno) # nobody asks errno why: square roots become instructions
 # PETSc's macros put the names of files into the library: without the folder it was built in.
 target_compile_options(tribound_flags INTERFACE $<$<CONFIG:Release>:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>)
 if(TRIBOUND_NATIVE)
