@@ -109,11 +109,12 @@ void subtract_tile(double* c, int c_stride, const double* a, int a_stride, const
     for (int j = 0; j < vectors; ++j) lanes_at(c + i * c_stride + j * lanes) = sum[i][j];
 }
 
-/// The same for a strip of C of any height.
+/// The same for a strip of C of any height. Tiles of 12 vectors leave room for the factors where there are 16
+/// registers.
 template <int n, int vectors, int k>
 void subtract_strip(double* c, int c_stride, const double* a, int a_stride, const double* b, int b_stride)
 {
-  constexpr int height = std::min(n, 16 / vectors);
+  constexpr int height = std::min(n, 12 / vectors);
   constexpr int rest = n % height;
   for (int i = 0; i < n - rest; i += height)
     subtract_tile<height, vectors, k>(c + i * c_stride, c_stride, a + i, a_stride, b, b_stride);
@@ -127,7 +128,7 @@ void subtract_transposed_product(double* c, int c_stride, const double* a, int a
                                  int b_stride)
 {
   constexpr int vectors = m / lanes;
-  constexpr int width = std::min(vectors, 4);
+  constexpr int width = std::min(vectors, 2);
   constexpr int rest = vectors % width;
   for (int j = 0; j < (vectors - rest) * lanes; j += width * lanes)
     subtract_strip<n, width, k>(c + j, c_stride, a, a_stride, b + j, b_stride);
