@@ -1,6 +1,6 @@
 /// @file repeated_shapes_test.cpp
-/// The equilibrated stress when cells share data that depend only on their shape: the identities, and the
-/// stress on a mesh whose change is far above rounding but far too small to matter.
+/// The equilibrated stress when cells and patches share data that depend only on their shape: the identities,
+/// and the stress on a mesh whose change is far above rounding but far too small to matter.
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include "support/meshes.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/equilibrate/repeated_patches.h"
 #include "tribound/certify/equilibrate/repeated_shapes.h"
 
 namespace tribound::test
@@ -78,6 +79,12 @@ void expect_same_stress()
     const certify::IdentityDefects defects =
         certify::check_identities<dim>(straight.form, result.traction, stress);
     EXPECT_LE(defects.largest(), p <= 2 ? 1e-11 : 1e-10);
+    // Factors of patches that repeat are those of the first ones on the thread.
+    for (const int n_threads : {2, 3})
+      EXPECT_EQ(
+          certify::equilibrate<dim>(straight.form, result.u, result.traction, n_threads, 0, patches).dis,
+          certify::equilibrate<dim>(straight.form, result.u, result.traction, 1, 0, patches).dis)
+          << certify::to_string(patches);
 
     const certify::Stress<dim> other = equilibrated(distorted);
     double norm = 0;
@@ -91,7 +98,38 @@ void expect_same_stress()
   }
 }
 
+/// Stands for factors of which two need more memory than there is.
+struct LargeFactors
+{
+  int number = 0;
+
+  void trim() {}
+  [[nodiscard]] std::size_t bytes() const { return std::size_t{40} << 20; }
+};
+
 }  // namespace
+
+TEST(RepeatedPatches, KeepsWhatComesTwiceWhileThereIsMemory)
+{
+  certify::RepeatedPatches<LargeFactors> repeated;
+  const certify::PatchKey first{1, 2};
+  const certify::PatchKey second{2, 1};
+  const auto keep = [&](const certify::PatchKey& key, int number)
+  {
+    LargeFactors factors{number};
+    return repeated.keep(key, factors)->number;
+  };
+  EXPECT_EQ(keep({}, 7), 7);  // not compared
+  EXPECT_EQ(keep({}, 7), 7);
+  EXPECT_EQ(repeated.find({}), nullptr);
+  EXPECT_EQ(keep(first, 1), 1);
+  EXPECT_EQ(repeated.find(first), nullptr);
+  EXPECT_EQ(keep(first, 1), 1);
+  ASSERT_NE(repeated.find(first), nullptr);
+  EXPECT_EQ(repeated.find(first)->number, 1);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(keep(second, 2), 2);
+  EXPECT_EQ(repeated.find(second), nullptr);
+}
 
 TEST(RepeatedShapes, GiveTheSameStressIn2D)
 {

@@ -52,6 +52,18 @@ class BlockCholesky
     return rank_;
   }
 
+  /// What order() returned.
+  [[nodiscard]] std::span<const int> rank() const { return rank_; }
+
+  /// Gives up the room that other matrices needed.
+  void trim()
+  {
+    pool_.resize(columns_.size());
+    pool_.shrink_to_fit();
+  }
+  /// The memory of the blocks.
+  [[nodiscard]] std::size_t bytes() const { return columns_.size() * sizeof(Matrix); }
+
   /// Block (i, j), i <= j, of the upper triangle; i and j are connected.
   [[nodiscard]] Matrix& block(int i, int j)
   {

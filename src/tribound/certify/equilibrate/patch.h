@@ -39,6 +39,7 @@ class Patch : public PatchFrame<AfwPatches<dim, p>>
   using RigidVector = std::array<double, S::rigid>;
   using Frame::cells_;
   using Frame::data_;
+  using Frame::factors_;
   using Frame::facets_;
   using Frame::failure;
   using Frame::matrix_;

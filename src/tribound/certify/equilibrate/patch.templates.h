@@ -19,10 +19,13 @@ void Patch<dim, p>::solve()
   this->order_facets();
   make_compatible();
   assemble();
-  fix_rigid_motions();
-  if (!matrix_.factor()) throw failure();
+  if (factors_ == nullptr)
+  {
+    fix_rigid_motions();
+    this->factor();
+  }
   for (int problem = 0; problem < n_problems_; ++problem)
-    matrix_.solve(std::span(x_[problem]).first(facets_.size()));
+    factors_->solve(std::span(x_[problem]).first(facets_.size()));
   if (motions_.n_almost() > 0) balance_almost_rigid();
   for (int problem = 0; problem < n_problems_; ++problem)
     for (int k = 0; k < n_cells_; ++k) recover(cells_[k], problem);
@@ -127,7 +130,9 @@ void Patch<dim, p>::decouple_fixed_components(int facet)
 
 /// Multipliers that are the trace of an admissible rigid motion change nothing: makes the matrix definite by
 /// a term on one facet, which the solution, the data being compatible, does not feel. The same for motions
-/// that are almost admissible, whose multiples balance_almost_rigid() finds.
+/// that are almost admissible, whose multiples balance_almost_rigid() finds. For the admissible ones any
+/// vectors near their traces do: in single precision those of translated patches are the same, which may
+/// share factors.
 template <int dim, int p>
 void Patch<dim, p>::fix_rigid_motions()
 {
@@ -137,7 +142,9 @@ void Patch<dim, p>::fix_rigid_motions()
     auto& diagonal = matrix_.block(facet, facet);
     double scale = 0;
     for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
-    const FacetVector free = trace(facet, motion, false);
+    FacetVector free = trace(facet, motion, false);
+    if (motion < motions_.size())
+      for (double& entry : free.entries) entry = static_cast<float>(entry);
     const double square = dot(free, free);
     for (int i = 0; i < S::block; ++i)
       for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * free[i] * free[j];

@@ -12,6 +12,7 @@
 #include "tribound/certify/equilibrate/block_cholesky.h"
 #include "tribound/certify/equilibrate/facet_data.h"
 #include "tribound/certify/equilibrate/prepared_cell.h"
+#include "tribound/certify/equilibrate/repeated_patches.h"
 
 namespace tribound::certify
 {
@@ -60,11 +61,13 @@ class PatchFrame
 
   /// What to throw where the patch has no solution.
   [[nodiscard]] SolveError failure() const;
-  /// Renames the facets by the order of elimination.
+  /// Renames the facets by the order of elimination. Finds the factors of a patch that repeats.
   void order_facets();
+  /// Factors the matrix.
+  void factor();
   /// Eliminates the multiplier of the outer facet.
   void eliminate_outer(CellPart& part);
-  /// Adds what the elimination has left to the matrix.
+  /// Adds what the elimination has left to the matrix, if there are no factors yet.
   void add_to_matrix(const CellPart& part);
   /// Moments of the traction of the dis (0), lin (1) or reg (2) problem, or null where there is none.
   [[nodiscard]] const typename FacetData<dim, p>::FacetVector* traction(Index facet, int problem) const;
@@ -78,7 +81,16 @@ class PatchFrame
   std::vector<PatchFacet> facets_;  ///< around the vertex, in the order of elimination
   std::vector<PatchFacet> found_;   ///< the same as they were found
   BlockCholesky<Operator::block> matrix_;
-  std::array<std::vector<FacetUnknown>, max_problems> x_;  ///< loads, then multipliers
+  const BlockCholesky<Operator::block>* factors_ = nullptr;  ///< null: matrix_ has none yet
+  std::array<std::vector<FacetUnknown>, max_problems> x_;    ///< loads, then multipliers
+
+ private:
+  /// Where cells have repeated shapes and no facet fixes anything the matrix depends on nothing else.
+  [[nodiscard]] bool is_comparable() const;
+  void make_key();
+
+  PatchKey key_;
+  RepeatedPatches<BlockCholesky<Operator::block>> repeated_;
 };
 
 template <class Kind>
@@ -121,15 +133,61 @@ SolveError PatchFrame<Kind>::failure() const
 }
 
 template <class Kind>
+bool PatchFrame<Kind>::is_comparable() const
+{
+  const bool fixes = std::ranges::any_of(found_,
+                                         [&](const PatchFacet& facet)
+                                         {
+                                           bool any = false;
+                                           for (int c = 0; c < dim && data_.is_boundary(facet.number); ++c)
+                                             any = any || data_.fixes(facet.number, c);
+                                           return any;
+                                         });
+  return !fixes && std::all_of(cells_.begin(), cells_.begin() + n_cells_,
+                               [](const CellPart& part) { return part.prepared->shape != nullptr; });
+}
+
+template <class Kind>
+void PatchFrame<Kind>::make_key()
+{
+  key_.clear();
+  if (!is_comparable()) return;
+  for (int k = 0; k < n_cells_; ++k)
+  {
+    const CellPart& part = cells_[k];
+    std::uintptr_t facets = part.vertex;
+    for (int f = 0; f <= dim; ++f)
+      if (f != part.vertex) facets = facets * found_.size() + part.facets[f];
+    key_.push_back(reinterpret_cast<std::uintptr_t>(part.prepared->shape));
+    key_.push_back(facets);
+  }
+}
+
+template <class Kind>
+void PatchFrame<Kind>::factor()
+{
+  if (!matrix_.factor()) throw failure();
+  factors_ = repeated_.keep(key_, matrix_);
+}
+
+template <class Kind>
 void PatchFrame<Kind>::order_facets()
 {
-  matrix_.reset(static_cast<int>(found_.size()));
-  for (int k = 0; k < n_cells_; ++k)
-    for (int f = 0; f <= dim; ++f)
-      for (int g = f + 1; g <= dim; ++g)
-        if (f != cells_[k].vertex && g != cells_[k].vertex)
-          matrix_.connect(cells_[k].facets[f], cells_[k].facets[g]);
-  const std::span<const int> rank = matrix_.order();
+  make_key();
+  factors_ = repeated_.find(key_);
+  std::span<const int> rank;
+  if (factors_ != nullptr)
+    rank = factors_->rank();
+  else
+  {
+    matrix_.reset(static_cast<int>(found_.size()));
+    for (int k = 0; k < n_cells_; ++k)
+      for (int f = 0; f <= dim; ++f)
+        for (int g = f + 1; g <= dim; ++g)
+          if (f != cells_[k].vertex && g != cells_[k].vertex)
+            matrix_.connect(cells_[k].facets[f], cells_[k].facets[g]);
+    rank = matrix_.order();
+  }
   for (int k = 0; k < n_cells_; ++k)
     for (int& facet : cells_[k].facets)
       if (facet >= 0) facet = rank[facet];
@@ -148,6 +206,7 @@ void PatchFrame<Kind>::eliminate_outer(CellPart& part)
 template <class Kind>
 void PatchFrame<Kind>::add_to_matrix(const CellPart& part)
 {
+  if (factors_ != nullptr) return;
   const Cell& cell = *part.prepared;
   const int o = part.vertex;
   for (int f = 0; f <= dim; ++f)

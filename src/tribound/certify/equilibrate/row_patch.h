@@ -38,7 +38,7 @@ class RowPatch : public PatchFrame<RowPatches<dim, p>>
   using Frame::cells_;
   using Frame::data_;
   using Frame::facets_;
-  using Frame::failure;
+  using Frame::factors_;
   using Frame::matrix_;
   using Frame::max_problems;
   using Frame::n_cells_;

@@ -140,22 +140,26 @@ void RowPatch<dim, p>::assemble_load(CellPart& part, int problem)
 template <int dim, int p>
 void RowPatch<dim, p>::solve_rows_like(int component)
 {
+  const auto n_facets = static_cast<int>(facets_.size());
   if (component > 0)  // the matrix was factored for other rows
   {
+    factors_ = nullptr;
     matrix_.clear();
     for (int k = 0; k < n_cells_; ++k) this->add_to_matrix(cells_[k]);
   }
-  const auto n_facets = static_cast<int>(facets_.size());
-  for (int i = 0; i < n_facets; ++i)
-    if (fixes(i, component)) matrix_.template decouple<S::facet>(i, 0);
-  if (!is_fixed(component)) fix_constant();
-  if (!matrix_.factor()) throw failure();
+  if (factors_ == nullptr)
+  {
+    for (int i = 0; i < n_facets; ++i)
+      if (fixes(i, component)) matrix_.template decouple<S::facet>(i, 0);
+    if (!is_fixed(component)) fix_constant();
+    this->factor();
+  }
   for (int problem = 0; problem < n_problems_; ++problem)
   {
     rows_.assign(x_[problem].begin(), x_[problem].begin() + n_facets);
     for (int i = 0; i < n_facets; ++i)
       if (fixes(i, component)) rows_[i] = {};  // the normal trace is free: its multiplier is 0
-    matrix_.solve(std::span(rows_));
+    factors_->solve(std::span(rows_));
     for (int c = component; c < dim; ++c)
       if (fixed_alike(c, component))
         for (int i = 0; i < n_facets; ++i)
