@@ -210,17 +210,17 @@ FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh
 
 template <int dim>
 FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                       Index most_cells_factorised)
+                                       Index most_factorised)
 {
   const FriedrichsConstant none{std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.partition()) return none;
   const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
   const Held bodies = held<dim>(problem, mesh, segments);
   if (bodies == Held::not_all) return none;
-  if (bodies == Held::each && mesh.n_cells() > most_cells_factorised) return without_factors(problem, mesh);
+  if (bodies == Held::each && mesh.n_cells() > most_factorised) return without_factors(problem, mesh);
   try
   {
-    return with_factors(problem, mesh, most_cells_factorised,
+    return with_factors(problem, mesh, most_factorised,
                         bodies == Held::with_pairs ? pair_terms<dim>(mesh, segments, 1) : PairTerms{});
   }
   catch (const SolveError&)  // such as memory for the factors: there is a bound without them, but for pairs

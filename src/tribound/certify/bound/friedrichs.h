@@ -26,10 +26,11 @@ struct FriedrichsConstant
 template <int dim>
 [[nodiscard]] double friedrichs_kappa();
 
-/// With more cells than this in 3D the proof uses no factorisation. For a cube of Kuhn's tetrahedra, one
-/// component, seconds of a core with factors and without: 105 000 cells 10 and 1.4; 304 000 cells 40 and 6,
-/// where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large.
-inline constexpr Index most_cells_factorised_3d = 100'000;
+/// With more cells than this the proof uses no factorisation. For a cube of Kuhn's tetrahedra, one component,
+/// seconds of a core with factors and without: 105 000 cells 10 and 1.4; 304 000 cells 40 and 6, where the
+/// factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large; it multiplies
+/// small numbers.
+inline constexpr Index most_cells_factorised = 20'000;
 
 /// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
 ///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2 + sum_k (1/h_k) ||[v]||_k^2,
@@ -40,8 +41,8 @@ inline constexpr Index most_cells_factorised_3d = 100'000;
 /// the proof without it is used, too. Infinite for a distributed mesh: the constant of the undistributed mesh
 /// is known before.
 template <int dim>
-[[nodiscard]] FriedrichsConstant friedrichs_constant(
-    const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-    Index most_cells_factorised = dim == 3 ? most_cells_factorised_3d : std::numeric_limits<Index>::max());
+[[nodiscard]] FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem,
+                                                     const mesh::Mesh<dim>& mesh,
+                                                     Index most_factorised = most_cells_factorised);
 
 }  // namespace tribound::certify
