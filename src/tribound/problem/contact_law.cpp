@@ -123,27 +123,24 @@ Point<dim> water_pressure(const LawPoint<dim>& point)
   return point.water * point.normal;
 }
 
-// The response of the effective traction, without water.
-template <int dim>
-Response<dim> respond_effectively(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P,
-                                  double delta)
+/// The response with water, from that of the effective traction.
+template <int dim, Law L>
+Response<dim> respond_to(const L& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
 {
-  return std::visit(
-      [&]<Law L>(const L& l) -> Response<dim>
-      {
-        if constexpr (std::same_as<L, Tied>)
-          return {P, std::numeric_limits<double>::infinity(), ContactStatus::tied};
-        else if constexpr (has_bond<L>)
-        {
-          const InterfaceResponse<dim> response = problem::respond<dim>(l, point, P);
-          return {response.traction, response.slip_limit, response.status};
-        }
-        else
-        {
-          return respond_unilaterally<dim>(l, point, P, delta);
-        }
-      },
-      law);
+  const Point<dim> pressure = water_pressure(point);
+  const Point<dim> effective = P + pressure;
+  Response<dim> response;
+  if constexpr (std::same_as<L, Tied>)
+    response = {effective, std::numeric_limits<double>::infinity(), ContactStatus::tied};
+  else if constexpr (has_bond<L>)
+  {
+    const InterfaceResponse<dim> of_bond = problem::respond<dim>(law, point, effective);
+    response = {of_bond.traction, of_bond.slip_limit, of_bond.status};
+  }
+  else
+    response = respond_unilaterally<dim>(law, point, effective, delta);
+  response.traction -= pressure;
+  return response;
 }
 
 template <int dim>
@@ -192,10 +189,19 @@ InterfaceResponse<dim> advance_effectively(const ContactLaw& law, const LawPoint
 template <int dim>
 Response<dim> respond(const ContactLaw& law, const LawPoint<dim>& point, const Point<dim>& P, double delta)
 {
-  const Point<dim> pressure = water_pressure(point);
-  Response<dim> response = respond_effectively<dim>(law, point, P + pressure, delta);
-  response.traction -= pressure;
-  return response;
+  return std::visit([&]<Law L>(const L& l) { return respond_to<dim>(l, point, P, delta); }, law);
+}
+
+template <int dim>
+void tractions(const ContactLaw& law, std::span<const LawPoint<dim>> points, std::span<const Point<dim>> P,
+               std::span<Point<dim>> T)
+{
+  std::visit(
+      [&]<Law L>(const L& l)
+      {
+        for (std::size_t q = 0; q < T.size(); ++q) T[q] = respond_to<dim>(l, points[q], P[q], 0).traction;
+      },
+      law);
 }
 
 template <int dim>
@@ -292,6 +298,10 @@ std::span<const LawKind> obstacle_law_kinds()
 
 template Response<2> respond(const ContactLaw&, const LawPoint<2>&, const Point<2>&, double);
 template Response<3> respond(const ContactLaw&, const LawPoint<3>&, const Point<3>&, double);
+template void tractions(const ContactLaw&, std::span<const LawPoint<2>>, std::span<const Point<2>>,
+                        std::span<Point<2>>);
+template void tractions(const ContactLaw&, std::span<const LawPoint<3>>, std::span<const Point<3>>,
+                        std::span<Point<3>>);
 template Tensor<2> tangent(const ContactLaw&, const LawPoint<2>&, const Point<2>&, double);
 template Tensor<3> tangent(const ContactLaw&, const LawPoint<3>&, const Point<3>&, double);
 template InterfaceResponse<2> advance(const ContactLaw&, const LawPoint<2>&, const Point<2>&);

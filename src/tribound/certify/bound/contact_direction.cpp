@@ -94,11 +94,14 @@ void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
       if (is_enough(parts[i])) continue;
       const Part whole = parts[i];
       const auto pieces = halves(whole.data.part);
-      for (std::size_t j = 0; j < pieces.size(); ++j)
+      std::array<Fields, n_halves> fields;
+      for (std::size_t j = 0; j < n_halves; ++j) fields[j] = on_half(whole.fields, j);
+      std::array<Integrals, n_halves> values;
+      integrate(k, fields, pieces, values);
+      for (std::size_t j = 0; j < n_halves; ++j)
       {
-        Part half{
-            {pieces[j], whole.data.gap, whole.data.strength, whole.data.water}, on_half(whole.fields, j), {}};
-        half.integrals = integrate(k, half.fields, pieces[j]);
+        const Part half{
+            {pieces[j], whole.data.gap, whole.data.strength, whole.data.water}, fields[j], values[j]};
         if (j == 0)
           parts[i] = half;
         else

@@ -98,16 +98,9 @@ std::vector<double> ContactTerms<dim>::coefficients_on(const Piece& part) const
 template <int dim>
 auto ContactTerms<dim>::changed(const Fields& fields, std::span<const double> coefficients) const -> Fields
 {
-  Fields result;
+  Fields result{};
   for (int j = 0; j < n_; ++j)
-  {
-    result.augmented[j] = result.dis[j] = Point<dim>::Zero();
-    for (int i = 0; i < n_; ++i)
-    {
-      result.augmented[j] += coefficients[i * n_ + j] * fields.augmented[i];
-      result.dis[j] += coefficients[i * n_ + j] * fields.dis[i];
-    }
-  }
+    for (int i = 0; i < n_; ++i) add_multiple(result[j], coefficients[i * n_ + j], fields[i]);
   return result;
 }
 
@@ -127,67 +120,102 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
   const auto without_gap = form_.traction_without_gap(u, k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
   for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = without_gap.col(q);
-  Fields result;
-  std::ranges::copy(project(augmented), result.augmented.begin());
-  std::ranges::copy(project(on_segment(t.dis, k)), result.dis.begin());
+  const std::vector<Point<dim>> of_augmented = project(augmented);
+  const std::vector<Point<dim>> of_dis = project(on_segment(t.dis, k));
+  Fields result{};
+  for (int i = 0; i < n_; ++i)
+    for (int a = 0; a < dim; ++a)
+    {
+      result[i][a] = of_augmented[i][a];
+      result[i][dim + a] = of_dis[i][a];
+    }
   return result;
 }
 
 template <int dim>
-auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece,
-                                  const std::optional<problem::NormalDeviation>& known) const -> Integrals
+struct ContactTerms<dim>::PointsOnPiece
+{
+  std::span<const FacetPoint> points;
+  std::span<const Point<dim>> places;
+  std::span<const Point<dim>> normals;
+  std::span<const double> gaps;
+};
+
+template <int dim>
+void ContactTerms<dim>::integrate(int k, std::span<const Fields> fields, std::span<const Piece> pieces,
+                                  std::span<Integrals> results,
+                                  const std::optional<problem::NormalDeviation>& known) const
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form_.space().mesh(), segment.slave);
+  const std::vector<FacetPoint>& of_rule = form_.facet_rule().points;
+  const std::size_t n_points = of_rule.size();
+  std::vector<FacetPoint> points(pieces.size() * n_points);
+  std::vector<Point<dim>> places(points.size());
+  std::vector<Point<dim>> normals(points.size());
+  std::vector<double> gaps(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i] = fem::point_in<dim - 1>(pieces[i / n_points], of_rule[i % n_points]);
+    places[i] = map(points[i]);
+  }
+  segment.directions_and_gaps(points, places, normals, gaps);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    const auto of_piece = [&](const auto& all) { return std::span(all).subspan(i * n_points, n_points); };
+    results[i] = integrate(k, fields[i], pieces[i],
+                           {of_piece(points), of_piece(places), of_piece(normals), of_piece(gaps)}, known);
+  }
+}
+
+template <int dim>
+auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piece, PointsOnPiece points,
+                                  const std::optional<problem::NormalDeviation>& known) const -> Integrals
+{
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   const problem::ContactLaw& law = segment.contact->law;
   const double tangential_weight = problem::tangential_weight(law);
   Integrals result;
+  std::vector<problem::LawPoint<dim>> law_points;
+  law_points.reserve(rule.size());
   std::vector<Point<dim>> augmented(rule.size());
   std::vector<Point<dim>> projected(rule.size());
-  std::vector<Point<dim>> normals(rule.size());
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    Pair values;
+    for (int i = 0; i < n_; ++i) add_multiple(values, theta_[q * n_ + i], fields[i]);
+    const Point<dim>& n = points.normals[q];
+    const double closing = segment.gamma * points.gaps[q];
+    const Point<dim>& p = augmented[q] = closing * n + augmented_of(values);
+    projected[q] = dis_of(values);
+    const auto& point = law_points.emplace_back(form_.law_point(k, points.points[q], points.places[q], n));
+    result.round_off = std::max(result.round_off, 1e-14 * (p.norm() + std::abs(closing) + point.water));
+  }
+  std::vector<Point<dim>> tractions(rule.size());
+  problem::tractions<dim>(law, law_points, augmented, tractions);
   std::vector<double> strengths(rule.size());
   std::vector<double> closings(rule.size());
-  std::vector<FacetPoint> points(rule.size());
-  std::vector<Point<dim>> places(rule.size());
   for (int q = 0; q < rule.size(); ++q)
   {
-    points[q] = fem::point_in<dim - 1>(piece, rule.points[q]);
-    places[q] = map(points[q]);
-  }
-  segment.directions_and_gaps(points, places, normals, closings);
-  double round_off = 0;
-  for (int q = 0; q < rule.size(); ++q)
-  {
-    const Point<dim>& n = normals[q];
-    const double closing = closings[q] *= segment.gamma;
-    Point<dim> p = closing * n;
-    Point<dim> dis = Point<dim>::Zero();
-    for (int i = 0; i < n_; ++i)
-    {
-      p += theta_[q * n_ + i] * fields.augmented[i];
-      dis += theta_[q * n_ + i] * fields.dis[i];
-    }
-    const problem::LawPoint<dim> point = form_.law_point(k, points[q], places[q], n);
-    closings[q] += point.water;
-    augmented[q] = p + point.water * n + tangential_weight * point.gamma * point.state.slip;
-    projected[q] = dis;
-    strengths[q] = point.strength;
-    round_off = std::max(round_off, 1e-14 * (p.norm() + std::abs(closing) + point.water));
-
-    const Point<dim> difference = problem::respond<dim>(law, point, p).traction - dis;
-    const double normal = difference.dot(n);
+    const problem::LawPoint<dim>& point = law_points[q];
+    const Point<dim> difference = tractions[q] - projected[q];
+    const double normal = difference.dot(point.normal);
     const double weight = fem::fraction<dim - 1>(piece) * rule.weights[q];
     result.normal += weight * normal * normal;
-    result.tangential += weight * (difference - normal * n).squaredNorm();
+    result.tangential += weight * (difference - normal * point.normal).squaredNorm();
+    augmented[q] += point.water * point.normal + tangential_weight * point.gamma * point.state.slip;
+    strengths[q] = point.strength;
+    closings[q] = segment.gamma * points.gaps[q] + point.water;
   }
   const bool turns = segment.varying_normal != nullptr;
-  result.kinks = kinks_(law, std::span(normals).first(turns ? normals.size() : 1), augmented, strengths,
-                        bond_on(form_, k), round_off);
-  result.round_off = round_off;
+  result.kinks = kinks_(law, points.normals.first(turns ? rule.size() : 1), augmented, strengths,
+                        bond_on(form_, k), result.round_off);
   if (!turns) return result;
-  for (int q = 0; q < rule.size(); ++q) augmented[q] -= closings[q] * normals[q];
-  result.of_normal = known ? *known : deviation_on<dim>(map, *segment.varying_normal, piece);
+  for (int q = 0; q < rule.size(); ++q) augmented[q] -= closings[q] * points.normals[q];
+  result.of_normal = known ? *known
+                           : deviation_on<dim>(contact::simplex_map(form_.space().mesh(), segment.slave),
+                                               *segment.varying_normal, piece);
   add_missed(k, piece, augmented, projected, result);
   return result;
 }
@@ -197,12 +225,13 @@ template <int dim>
 auto ContactTerms<dim>::halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                               const Integrals& whole) const -> Halved
 {
-  Halved result{part, halves(piece), {}, {}, 0};
+  Halved result{part, halves(piece), {}, std::vector<Integrals>(n_halves), 0};
+  result.fields.reserve(n_halves);
   Integrals sum;
+  for (std::size_t i = 0; i < result.pieces.size(); ++i) result.fields.push_back(on_half(fields, i));
+  integrate(k, result.fields, result.pieces, result.values, whole.of_normal);
   for (std::size_t i = 0; i < result.pieces.size(); ++i)
   {
-    result.fields[i] = on_half(fields, i);
-    result.values[i] = integrate(k, result.fields[i], result.pieces[i], whole.of_normal);
     sum += result.values[i];
     result.change += fem::fraction<dim - 1>(result.pieces[i]) * result.values[i].kinks.hidden;
   }
@@ -264,18 +293,16 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
   if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
-  const auto vanishes = [n = n_](const auto& coefficients)
-  {
-    return std::all_of(coefficients.begin(), coefficients.begin() + n,
-                       [](const auto& c) { return c.isZero(0); });
-  };
-  if (vanishes(on_k.augmented) && vanishes(on_k.dis) && has_no_traction_at_rest(form_, k)) return result;
+  const bool vanishes =
+      std::ranges::all_of(on_k, [](const Pair& pair)
+                          { return std::ranges::all_of(pair.entries, [](double x) { return x == 0; }); });
+  if (vanishes && has_no_traction_at_rest(form_, k)) return result;
   std::vector<Part> parts;
   if (form_.data().contact_parts(k).empty())
     parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
   for (const contact::ContactDatumPart<dim>& data : form_.data().contact_parts(k))
     parts.push_back({data, changed(on_k, coefficients_on(data.part)), {}});
-  for (Part& part : parts) part.integrals = integrate(k, part.fields, part.data.part);
+  for (Part& part : parts) integrate(k, {&part.fields, 1}, {&part.data.part, 1}, {&part.integrals, 1});
   if (segment.varying_normal != nullptr) resolve_normal(k, parts);
   if (rule_ == ContactRule::resolved) settle(k, parts);
   for (const Part& part : parts) add_part(segment, part, result);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tribound/certify/bound/kinks.h"
+#include "tribound/certify/equilibrate/small_dense.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/degree.h"
@@ -70,13 +71,19 @@ class ContactTerms
   static constexpr int n_halves = 1 << (dim - 1);
   static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree);
 
+  /// Coefficients of {sigma(u)} - gamma [u], which is P(u) without the gap, then of Pi_k T.
+  using Pair = DenseVector<2 * dim>;
+  [[nodiscard]] static Eigen::Map<const Point<dim>> augmented_of(const Pair& pair)
+  {
+    return Eigen::Map<const Point<dim>>(pair.data());
+  }
+  [[nodiscard]] static Eigen::Map<const Point<dim>> dis_of(const Pair& pair)
+  {
+    return Eigen::Map<const Point<dim>>(pair.data() + dim);
+  }
   /// Vector polynomials of degree p on a piece, in the orthonormal basis of the reference simplex in the
   /// coordinates of the piece.
-  struct Fields
-  {
-    std::array<Point<dim>, max_n> augmented;  ///< {sigma(u)} - gamma [u]: P(u) without the gap
-    std::array<Point<dim>, max_n> dis;        ///< Pi_k T
-  };
+  using Fields = std::array<Pair, max_n>;
   /// Squares of the possible increase of norms where N is not a polynomial.
   struct Missed
   {
@@ -120,8 +127,8 @@ class ContactTerms
   {
     std::size_t part;  ///< number of the part of the segment
     std::array<Piece, n_halves> pieces;
-    std::array<Fields, n_halves> fields;
-    std::array<Integrals, n_halves> values;
+    std::vector<Fields> fields;
+    std::vector<Integrals> values;
     double change;  ///< of the integrals, plus what no point has seen
   };
 
@@ -146,9 +153,15 @@ class ContactTerms
     const std::size_t size = to_half_.size() / n_halves;
     return changed(whole, std::span(to_half_).subspan(half * size, size));
   }
-  /// `known`: the deviation of N on a larger piece; computed if absent.
-  [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece,
-                                    const std::optional<problem::NormalDeviation>& known = {}) const;
+  /// The integrals over pieces of segment k with their fields, together because formulas are then evaluated
+  /// faster. `known`: the deviation of N on a larger piece; computed if absent.
+  void integrate(int k, std::span<const Fields> fields, std::span<const Piece> pieces,
+                 std::span<Integrals> results,
+                 const std::optional<problem::NormalDeviation>& known = {}) const;
+  /// The points of the rule on a piece, and the data there.
+  struct PointsOnPiece;
+  [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece, PointsOnPiece points,
+                                    const std::optional<problem::NormalDeviation>& known) const;
   /// Sets what is missed if N is not a polynomial on the piece, from A, Pi_k T and the kinks there.
   void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
                   std::span<const Point<dim>> dis, Integrals& integrals) const;

@@ -241,18 +241,22 @@ void Estimator<dim>::contact_terms(std::span<const double> u, const Stress<dim>&
     eta.reg2t += share * squares.reg2t;
     touched.push_back(cell);
   };
-  for (std::size_t k = 0; k < form_.segments().size(); ++k)
-  {
-    const contact::ContactSegment<dim>& segment = form_.segments()[k];
-    if (!is_own(segment.slave) && !(segment.master && is_own(*segment.master))) continue;
-    const ContactSquares squares = contact_(static_cast<int>(k), u, stress.tractions);
-    const double share = segment.master ? 0.5 : 1;
-    segment.for_each_side(
+  const std::span<const contact::ContactSegment<dim>> segments = form_.segments();
+  std::vector<ContactSquares> squares(segments.size());
+  parallel_for(
+      segments.size(),
+      [&](std::size_t k)
+      {
+        if (is_own(segments[k].slave) || (segments[k].master && is_own(*segments[k].master)))
+          squares[k] = contact_(static_cast<int>(k), u, stress.tractions);
+      },
+      1);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    segments[k].for_each_side(
         [&](const contact::SegmentSide<dim>& side)
         {
-          if (is_own(side)) add(side.facet.cell, share, squares);
+          if (is_own(side)) add(side.facet.cell, segments[k].master ? 0.5 : 1, squares[k]);
         });
-  }
   sort_and_unite(touched);
   for (const Index cell : touched)
     for (const Component& c : all_components)

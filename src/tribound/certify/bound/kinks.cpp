@@ -1,9 +1,11 @@
 #include "tribound/certify/bound/kinks.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "tribound/certify/equilibrate/small_dense.h"
 #include "tribound/fem/bernstein.h"
 
 namespace tribound::certify
@@ -28,16 +30,31 @@ struct Range
   }
 };
 
-/// P^n, P^t and S_h (if it is polynomial) in columns; rows are their values at the points or their
-/// coefficients.
+/// P^n, P^t and S_h (if it is polynomial): the values at a point, or a coefficient.
 template <int dim>
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, dim + 2>;
-
-auto matrix(const std::vector<double>& entries, Eigen::Index n_columns)
+struct Row : DenseVector<dim + 2>
 {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(entries.data(), static_cast<Eigen::Index>(entries.size()) / n_columns,
-                                    n_columns);
+  [[nodiscard]] double normal() const { return (*this)[0]; }
+  [[nodiscard]] Point<dim> tangential() const { return Eigen::Map<const Point<dim>>(this->data() + 1); }
+  [[nodiscard]] double limit() const { return (*this)[dim + 1]; }
+  /// |P^t| - S_h
+  [[nodiscard]] double excess() const { return tangential().norm() - limit(); }
+};
+
+template <int dim>
+using Rows = std::vector<Row<dim>>;
+
+template <int dim, class Value>
+double least(const Rows<dim>& rows, const Value& value)
+{
+  double result = std::numeric_limits<double>::infinity();
+  for (const Row<dim>& row : rows) result = std::min(result, value(row));
+  return result;
+}
+template <int dim, class Value>
+double greatest(const Rows<dim>& rows, const Value& value)
+{
+  return -least(rows, [&](const Row<dim>& row) { return -value(row); });
 }
 
 /// P^t in a frame in which it is a polynomial: that of space, or in 2D that of a varying N.
@@ -51,42 +68,44 @@ Point<dim> tangential_part(const Point<dim>& p, double p_n, const Point<dim>& n,
 
 /// |P^t| - S_h, S_h <= 0 standing for 0.
 template <int dim>
-Range slip_range(const Columns<dim>& at_points, const Columns<dim>& coefficients)
+Range slip_range(const Rows<dim>& at_points, const Rows<dim>& coefficients)
 {
-  const auto tangential = [](const Columns<dim>& values) { return values.template middleCols<dim>(1); };
-  const auto excess = [&](const Columns<dim>& values)
-  { return (tangential(values).rowwise().norm() - values.col(dim + 1)).eval(); };
-  Point<dim> direction = tangential(at_points).colwise().sum().transpose();
+  const auto excess = [](const Row<dim>& row) { return row.excess(); };
+  Point<dim> direction = Point<dim>::Zero();
+  for (const Row<dim>& row : at_points) direction += row.tangential();
   if (direction.norm() > 0) direction.normalize();
-  const Eigen::VectorXd seen = excess(at_points);
-  return {(tangential(coefficients) * direction - coefficients.col(dim + 1)).minCoeff(),
-          excess(coefficients).maxCoeff(), seen.minCoeff(), seen.maxCoeff()};
+  return {
+      least(coefficients, [&](const Row<dim>& row) { return row.tangential().dot(direction) - row.limit(); }),
+      greatest(coefficients, excess), least(at_points, excess), greatest(at_points, excess)};
 }
 
 /// Whether an undamaged bond carries everything: T = P.
 template <int dim>
-bool bond_holds(const problem::ContactLaw& law, const Columns<dim>& at_points,
-                const Columns<dim>& coefficients)
+bool bond_holds(const problem::ContactLaw& law, const Rows<dim>& at_points, const Rows<dim>& coefficients)
 {
-  const double pulled = coefficients.col(0).maxCoeff();
   if (const auto* joint = std::get_if<problem::JointLaw>(&law))
-    return pulled <= joint->tension.strength &&
+    return greatest(coefficients, [](const Row<dim>& row) { return row.normal(); }) <=
+               joint->tension.strength &&
            (joint->stick || slip_range<dim>(at_points, coefficients).highest <= joint->cohesion);
   const auto* const mixed = std::get_if<problem::MixedLaw>(&law);
   if (mixed == nullptr) return false;
-  Columns<dim> scaled = coefficients;
-  scaled.template middleCols<dim>(1) /= mixed->shear_ratio;
-  scaled.col(0) = scaled.col(0).cwiseMax(0.0);
-  return scaled.template leftCols<dim + 1>().rowwise().norm().maxCoeff() <= mixed->tension.strength;
+  return greatest(coefficients,
+                  [&](const Row<dim>& row) {
+                    return std::hypot(std::max(row.normal(), 0.0),
+                                      row.tangential().norm() / mixed->shear_ratio);
+                  }) <= mixed->tension.strength;
 }
 
 }  // namespace
 
 template <int dim>
 KinkFinder<dim>::KinkFinder(const fem::Quadrature<dim - 1>& rule, int degree)
-    : to_bernstein_(fem::bernstein_from_points<dim - 1>(rule, degree)),
-      amplification_(matrix(to_bernstein_, rule.size()).cwiseAbs().rowwise().sum().maxCoeff())
+    : to_bernstein_(fem::bernstein_from_points<dim - 1>(rule, degree)), n_points_(rule.size())
 {
+  for (auto row = to_bernstein_.begin(); row != to_bernstein_.end(); row += n_points_)
+    amplification_ = std::max(
+        amplification_,
+        std::accumulate(row, row + n_points_, 0.0, [](double sum, double x) { return sum + std::abs(x); }));
 }
 
 template <int dim>
@@ -95,20 +114,24 @@ Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<cons
                                   double noise) const
 {
   const problem::FrictionCone friction = cone(law);
-  Columns<dim> at_points(p.size(), dim + 2);
+  Rows<dim> at_points(p.size());
   const bool turns = normals.size() > 1;
   for (std::size_t q = 0; q < p.size(); ++q)
   {
     const Point<dim>& n = normals[turns ? q : 0];
     const double p_n = p[q].dot(n);
-    at_points(q, 0) = p_n;
-    at_points.template block<1, dim>(q, 1) = tangential_part<dim>(p[q], p_n, n, turns).transpose();
-    at_points(q, dim + 1) = friction.closed_limit(strength[q], p_n);
+    at_points[q][0] = p_n;
+    Eigen::Map<Point<dim>>(at_points[q].data() + 1) = tangential_part<dim>(p[q], p_n, n, turns);
+    at_points[q][dim + 1] = friction.closed_limit(strength[q], p_n);
   }
-  const Columns<dim> coefficients = matrix(to_bernstein_, at_points.rows()) * at_points;
+  Rows<dim> coefficients(to_bernstein_.size() / n_points_);
+  for (std::size_t i = 0; i < coefficients.size(); ++i)
+    for (int q = 0; q < n_points_; ++q)
+      add_multiple(coefficients[i], to_bernstein_[i * n_points_ + q], at_points[q]);
 
-  const Range pressing{coefficients.col(0).minCoeff(), coefficients.col(0).maxCoeff(),
-                       at_points.col(0).minCoeff(), at_points.col(0).maxCoeff()};
+  const auto normal = [](const Row<dim>& row) { return row.normal(); };
+  const Range pressing{least(coefficients, normal), greatest(coefficients, normal), least(at_points, normal),
+                       greatest(at_points, normal)};
   Kinks result{
       .possible = pressing.changes_sign(noise), .hidden = pressing.hidden(), .lowest = pressing.lowest};
   const bool is_friction =
@@ -119,7 +142,7 @@ Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<cons
     result.hidden = 0;
     return result;
   }
-  const bool rubs = coefficients.col(dim + 1).maxCoeff() > noise;
+  const bool rubs = greatest(coefficients, [](const Row<dim>& row) { return row.limit(); }) > noise;
   if (!rubs) return result;
   const Range slipping = slip_range<dim>(at_points, coefficients);
   result.possible = result.possible || slipping.changes_sign(noise);

@@ -57,7 +57,8 @@ class KinkFinder
   [[nodiscard]] double amplification() const { return amplification_; }
 
  private:
-  std::vector<double> to_bernstein_;  ///< [coefficient * points + point]
+  std::vector<double> to_bernstein_;  ///< [coefficient * n_points_ + point]
+  int n_points_;
   double amplification_ = 0;
 };
 
