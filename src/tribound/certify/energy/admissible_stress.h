@@ -34,7 +34,8 @@ struct AdmissibleStress
 /// alpha follows by Cholesky factorisation from the products of the K_k in the metric of the cell. tau is
 /// admissible for any alpha. If rounding keeps the matrix from being positive definite, alpha is 0 and tau
 /// not the nearest (cells a million times as long as high were not enough). One object per thread: it keeps
-/// the matrix. Compiled for each dimension and degree by certify/energy/kernel.cpp.in.
+/// the factors for the next stress on the same cell. Compiled for each dimension and degree by
+/// certify/energy/kernel.cpp.in.
 template <int dim, int q>
 class AdmissibleStressSolver
 {
@@ -52,9 +53,11 @@ class AdmissibleStressSolver
 
   /// Makes the difference as small as possible; `map` maps the components of tau^ to those of J tau^ J^T.
   void minimise(const Metric& map, const Metric& compliance, PiecewiseStress<dim, q>& difference);
-  /// The products of the functions of the kernel in a metric of tau^.
-  void form_gram(const Metric& metric);
+  /// Factors the products of the functions of the kernel in a metric of tau^; false if rounding prevents it.
+  [[nodiscard]] bool factor(const Metric& metric);
 
+  Metric metric_ = Metric::Zero();  ///< that of the factors
+  bool is_definite_ = false;
   Dense<S::kernel, S::kernel> gram_;
   std::array<double, S::kernel> reciprocal_{};
 };

@@ -143,8 +143,7 @@ void AdmissibleStressSolver<dim, q>::minimise(const Metric& map, const Metric& c
   if constexpr (S::kernel > 0)  // q > 1
   {
     const auto& kernel = alfeld_reference<dim, q>().kernel;
-    form_gram(map.transpose() * compliance * map);
-    if (!cholesky<S::kernel>(gram_.data(), gram_.stride, reciprocal_.data())) return;
+    if (!factor(map.transpose() * compliance * map)) return;
 
     const Metric to_products = map.transpose() * compliance;
     PiecewiseStress<dim, q> product;
@@ -163,8 +162,10 @@ void AdmissibleStressSolver<dim, q>::minimise(const Metric& map, const Metric& c
 }
 
 template <int dim, int q>
-void AdmissibleStressSolver<dim, q>::form_gram(const Metric& metric)
+bool AdmissibleStressSolver<dim, q>::factor(const Metric& metric)
 {
+  if (metric == metric_) return is_definite_;
+  metric_ = metric;
   constexpr int n = AlfeldReference<dim, q>::n_products;
   const auto& products = alfeld_reference<dim, q>().products;
   std::array<double, n> factors;
@@ -177,6 +178,9 @@ void AdmissibleStressSolver<dim, q>::form_gram(const Metric& metric)
       for (int m = 0; m < n; ++m) sum += factors[m] * lanes_at(products.row(k * n + m) + j);
       lanes_at(gram_.row(k) + j) = sum;
     }
+  if constexpr (S::kernel > 0)
+    is_definite_ = cholesky<S::kernel>(gram_.data(), gram_.stride, reciprocal_.data());
+  return is_definite_;
 }
 
 }  // namespace tribound::certify
