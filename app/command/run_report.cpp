@@ -8,6 +8,7 @@
 #include "app/console/console.h"
 #include "app/console/text.h"
 #include "app/shared_file.h"
+#include "tribound/algebra/cholesky.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/case/resolve.h"
 #include "tribound/doctor/run_warnings.h"
@@ -101,6 +102,8 @@ void RunReport<dim>::count_time(Clock::time_point& begin)
   held_ += held;
   times.level += held;
   times.level_cpu += cpu_now - std::exchange(cpu_before_, cpu_now);
+  const int factored_now = algebra::n_factorisations();
+  times.factorisations += factored_now - std::exchange(factored_before_, factored_now);
 }
 
 template <int dim>
@@ -122,6 +125,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   level.times.output_cpu = before.output_cpu + output_cpu;
   level.times.level += held_;
   level.times.level_cpu = before.level_cpu;
+  level.times.factorisations = before.factorisations;
   record_.levels.push_back(std::move(level));
   if (step || record_.levels.back().bound)
   {

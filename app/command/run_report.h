@@ -166,6 +166,7 @@ class RunReport
   bool must_write_ = false;                   ///< whether the existing one is no longer valid
   double held_ = 0;                    ///< wall time for which the loop was delayed on the last level; s
   double cpu_before_ = cpu_seconds();  ///< CPU time before the current level
+  int factored_before_ = 0;            ///< matrices factored before it
   double writing_ = 0;                 ///< wall time of writing in the background; s
   double writing_cpu_ = 0;
   Background background_;  ///< the last member, so that it is destroyed before the data of its jobs

@@ -1,5 +1,7 @@
 #include "tribound/algebra/cholesky.h"
 
+#include <atomic>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -26,7 +28,19 @@ bool succeeded(Mat factors)
   return error == MAT_FACTOR_NOERROR;
 }
 
+std::atomic<int> factorisations = 0;
+
 }  // namespace
+
+int n_factorisations()
+{
+  return factorisations;
+}
+
+void detail::count_factorisation()
+{
+  ++factorisations;
+}
 
 MatHandle detail::start_cholesky(const SparseMatrix& a, int dim)
 {
@@ -44,6 +58,7 @@ bool detail::factorise_cholesky(const SparseMatrix& a, Mat factors)
   check(MatFactorInfoInitialize(&info), "factorising");
   check(MatCholeskyFactorSymbolic(factors, a.handle(), nullptr, &info), "ordering a matrix");
   if (!succeeded(factors)) return false;
+  count_factorisation();
   check(MatCholeskyFactorNumeric(factors, a.handle(), &info), "factorising");
   if (!succeeded(factors)) return false;
   PetscInt negative = 0;

@@ -11,6 +11,9 @@
 namespace tribound::algebra
 {
 
+/// How many sparse matrices this process has factored so far.
+[[nodiscard]] int n_factorisations();
+
 /// L D L^T = A without pivoting. Keeps its own copy of what it needs of A.
 class SparseCholesky
 {

@@ -244,6 +244,7 @@ void LinearSolver::prepare(const SparseMatrix& a, Mat product)
   check(KSPSetOperators(ksp_.get(), product, a.handle()), "factorising");
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_FALSE), "factorising");
   if (multigrid_) multigrid_->renew(preconditioner(), a);
+  if (method_ == LinearMethod::direct) detail::count_factorisation();
   check(KSPSetUp(ksp_.get()), "factorising");
   if (multigrid_) multigrid_->settle(preconditioner(), changing_);
   check(KSPSetReusePreconditioner(ksp_.get(), PETSC_TRUE), "factorising");

@@ -157,5 +157,7 @@ void configure_mumps(Mat factors, int dim);
 /// Computes them, with an Options object alive. False: a pivot is not positive. Throws SolveError when the
 /// memory does not suffice.
 [[nodiscard]] bool factorise_cholesky(const SparseMatrix& a, Mat factors);
+/// Counts one more for n_factorisations().
+void count_factorisation();
 
 }  // namespace tribound::algebra::detail

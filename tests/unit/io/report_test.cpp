@@ -101,11 +101,14 @@ TEST(Report, TimesOfEveryStage)
   run.levels[0].times.certify_cpu = 0.75;
   run.levels[0].times.output_cpu = 0.375;
   run.levels[0].times.level_cpu = 3.0;
+  run.levels[0].times.factorisations = 3;
   const json expected = {{"solve", 1.5},        {"certify", 0.25},   {"bisect", 0.5},
                          {"discretise", 0.25},  {"transfer", 0.125}, {"output", 0.0625},
                          {"level", 2.0},        {"solve_cpu", 1.75}, {"certify_cpu", 0.75},
-                         {"output_cpu", 0.375}, {"level_cpu", 3.0}};
-  EXPECT_EQ(json::parse(io::certificate_json(run))["levels"][0]["times"], expected);
+                         {"output_cpu", 0.375}, {"level_cpu", 3.0},  {"factorisations", 3}};
+  const json certificate = json::parse(io::certificate_json(run));
+  EXPECT_EQ(certificate["levels"][0]["times"], expected);
+  EXPECT_EQ(certificate["times"]["factorisations"], 3);
 }
 
 io::RunRecord regularised_run()

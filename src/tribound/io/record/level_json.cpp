@@ -197,7 +197,8 @@ Json level_json(const LevelRecord& level)
                           {"solve_cpu", level.times.solve_cpu},
                           {"certify_cpu", level.times.certify_cpu},
                           {"output_cpu", level.times.output_cpu},
-                          {"level_cpu", level.times.level_cpu}});
+                          {"level_cpu", level.times.level_cpu},
+                          {"factorisations", level.times.factorisations}});
   return object;
 }
 

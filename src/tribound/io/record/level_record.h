@@ -47,6 +47,7 @@ struct LevelTimes
   double certify_cpu = 0.0;
   double output_cpu = 0.0;
   double level_cpu = 0.0;
+  int factorisations = 0;  ///< of sparse matrices by this process
 };
 
 struct LevelRecord
@@ -71,7 +72,7 @@ struct LevelRecord
 
 /// The record of a level reported by the loop, with moments about the given point; `slides` and `units`: as
 /// solution_figures() has them. Where the verdict says that there is no bound, no step shows one. The times
-/// of output, and level_cpu, are not set.
+/// of output, level_cpu and factorisations are not set.
 template <int dim>
 [[nodiscard]] LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& moment_about,
                                        const std::vector<bool>& slides, const problem::Units& units = {});

@@ -12,13 +12,19 @@ namespace
 
 constexpr const char* certificate_schema = "1";
 
-/// Times before the first level, and of the stages summed over all levels.
+/// Times before the first level, and of the stages summed over all levels, as factorisations are.
 Json times_json(const RunRecord& run)
 {
   StageTimes sum;
-  for (const LevelRecord& level : run.levels) sum += level.times.stages;
+  int factorisations = 0;
+  for (const LevelRecord& level : run.levels)
+  {
+    sum += level.times.stages;
+    factorisations += level.times.factorisations;
+  }
   Json object{{"setup", run.setup}};
   object.update(stages_json(sum));
+  object["factorisations"] = factorisations;
   return object;
 }
 
