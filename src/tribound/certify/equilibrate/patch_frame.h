@@ -152,6 +152,7 @@ void PatchFrame<Kind>::make_key()
 {
   key_.clear();
   if (!is_comparable()) return;
+  key_.push_back(found_.size());
   for (int k = 0; k < n_cells_; ++k)
   {
     const CellPart& part = cells_[k];

@@ -3,7 +3,6 @@
 /// @file repeated_patches.h
 /// Factors that patches which are translates of each other share: most patches of a structured mesh.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -13,8 +12,9 @@
 namespace tribound::certify
 {
 
-/// A patch by its cells in their order: for each its shape, its facets and which of them is the outer one.
-/// Patches with the same key have the same matrix. Empty: a patch that is not compared.
+/// A patch by the number of its facets and its cells in their order: for each its shape, its facets and which
+/// of them is the outer one. Patches with the same key have the same matrix. Empty: a patch that is not
+/// compared.
 using PatchKey = std::vector<std::uintptr_t>;
 
 /// The factored matrices of patches that come twice. One object per thread.
@@ -40,8 +40,7 @@ class RepeatedPatches
 
  private:
   static constexpr std::size_t most_bytes = std::size_t{64} << 20;
-  static constexpr std::size_t table_size = 1
-                                            << 12;  // a patch whose entry is overwritten is met as a new one
+  static constexpr std::size_t table_size = 4096;  // a patch whose entry is overwritten is new again
 
   /// Remembers the patch.
   bool came_before(const PatchKey& key)
