@@ -128,11 +128,20 @@ void Patch<dim, p>::decouple_fixed_components(int facet)
   }
 }
 
+/// To multiples of about a millionth of the size. Sizes that differ by rounding must not end on different
+/// sides of a power of 2; many are one.
+template <int n>
+void round_coarsely(DenseVector<n>& x, double size)
+{
+  const double quantum = std::exp2(std::ilogb(1.2345 * size) - 20);
+  for (double& entry : x.entries) entry = quantum * std::nearbyint(entry / quantum);
+}
+
 /// Multipliers that are the trace of an admissible rigid motion change nothing: makes the matrix definite by
 /// a term on one facet, which the solution, the data being compatible, does not feel. The same for motions
 /// that are almost admissible, whose multiples balance_almost_rigid() finds. For the admissible ones any
-/// vectors near their traces do: in single precision those of translated patches are the same, which may
-/// share factors.
+/// vectors near their traces do: rounded to a few digits those of translated patches, which may share
+/// factors, are the same.
 template <int dim, int p>
 void Patch<dim, p>::fix_rigid_motions()
 {
@@ -143,8 +152,7 @@ void Patch<dim, p>::fix_rigid_motions()
     double scale = 0;
     for (int i = 0; i < S::block; ++i) scale += diagonal(i, i) / S::block;
     FacetVector free = trace(facet, motion, false);
-    if (motion < motions_.size())
-      for (double& entry : free.entries) entry = static_cast<float>(entry);
+    if (motion < motions_.size()) round_coarsely(free, std::sqrt(facets_[facet].scale));
     const double square = dot(free, free);
     for (int i = 0; i < S::block; ++i)
       for (int j = 0; j < S::block; ++j) diagonal(i, j) += scale / square * free[i] * free[j];
