@@ -39,8 +39,8 @@ class Patch : public PatchFrame<AfwPatches<dim, p>>
   using RigidVector = std::array<double, S::rigid>;
   using Frame::cells_;
   using Frame::data_;
-  using Frame::factors_;
   using Frame::facets_;
+  using Frame::factors_;
   using Frame::failure;
   using Frame::matrix_;
   using Frame::max_problems;
