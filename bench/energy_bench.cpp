@@ -48,8 +48,9 @@ class BalancedBlock
   [[nodiscard]] std::vector<double> solve() const
   {
     const bool is_raised = block_.space.degree() < space_.degree();
+    certify::ContactSystems<dim> systems(form_, {}, false);
     return certify::balanced_solution<dim>(form_, is_raised ? block_.space : space_, block_.u, t_, motions_,
-                                           {});
+                                           {}, systems);
   }
 
  private:

@@ -49,7 +49,7 @@ template <int dim>
 std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                                       const fem::LagrangeSpace<dim>& space, std::span<const double> start,
                                       std::span<const Point<dim>> t, const FreeMotions<dim>& motions,
-                                      const algebra::SolverOptions& solver)
+                                      const algebra::SolverOptions& solver, ContactSystems<dim>& systems)
 {
   std::vector<double> load(rich.load().begin(), rich.load().end());
   rich.add_contact_load(t, load);
@@ -60,6 +60,7 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                        for (int a = 0; a < dim; ++a) r[dim * node + a] += value * load[dim * richer + a];
                      });
   constexpr double tight = 1e-12;
+  if (&space == &rich.space() && motions.size() == 0) return systems.solve(OnContact::free, r, start, tight);
   const std::vector<Index> supports = motions.size() > 0 ? motions.supports(space) : std::vector<Index>();
   const ElasticSystem<dim> system(rich.problem(), space, fem::dirichlet(rich.problem(), space).fixed, solver,
                                   {}, supports);
@@ -73,9 +74,11 @@ template std::vector<double> raised(const fem::LagrangeSpace<3>&, std::span<cons
                                     const fem::LagrangeSpace<3>&);
 template std::vector<double> balanced_solution(const contact::NitscheForm<2>&, const fem::LagrangeSpace<2>&,
                                                std::span<const double>, std::span<const Point<2>>,
-                                               const FreeMotions<2>&, const algebra::SolverOptions&);
+                                               const FreeMotions<2>&, const algebra::SolverOptions&,
+                                               ContactSystems<2>&);
 template std::vector<double> balanced_solution(const contact::NitscheForm<3>&, const fem::LagrangeSpace<3>&,
                                                std::span<const double>, std::span<const Point<3>>,
-                                               const FreeMotions<3>&, const algebra::SolverOptions&);
+                                               const FreeMotions<3>&, const algebra::SolverOptions&,
+                                               ContactSystems<3>&);
 
 }  // namespace tribound::certify

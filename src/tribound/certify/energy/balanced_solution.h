@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tribound/algebra/linear_solver.h"
+#include "tribound/certify/energy/contact_systems.h"
 #include "tribound/certify/energy/free_motions.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -22,13 +23,11 @@ template <int dim>
 /// `rich`, which contains it and has the load and the contact points. The residual is 1e-12 of the forces, up
 /// to rounding. Starts from `start`, which has the values of the fixed degrees of freedom. Load and t must do
 /// no work in the free motions. Of the solutions, which differ by these, the one is taken that leaves
-/// FreeMotions::supports() as they are in `start`.
+/// FreeMotions::supports() as they are in `start`. `systems` are those of `rich`.
 template <int dim>
-[[nodiscard]] std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
-                                                    const fem::LagrangeSpace<dim>& space,
-                                                    std::span<const double> start,
-                                                    std::span<const Point<dim>> t,
-                                                    const FreeMotions<dim>& motions,
-                                                    const algebra::SolverOptions& solver);
+[[nodiscard]] std::vector<double> balanced_solution(
+    const contact::NitscheForm<dim>& rich, const fem::LagrangeSpace<dim>& space,
+    std::span<const double> start, std::span<const Point<dim>> t, const FreeMotions<dim>& motions,
+    const algebra::SolverOptions& solver, ContactSystems<dim>& systems);
 
 }  // namespace tribound::certify

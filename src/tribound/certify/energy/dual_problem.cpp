@@ -93,47 +93,8 @@ problem::Problem<dim> without_loads(const problem::Problem<dim>& problem, const 
   return with_load_on<dim>(problem, mesh, -1, Point<dim>::Zero());
 }
 
-template <int dim>
-const ElasticSystem<dim>& DualSystems<dim>::with_free_contact()
-{
-  if (!free_)
-    free_ = std::make_unique<ElasticSystem<dim>>(form_.problem(), form_.space(), form_.constraints().fixed,
-                                                 solver_);
-  return *free_;
-}
-
-template <int dim>
-const ElasticSystem<dim>& DualSystems<dim>::with_held_contact()
-{
-  if (held_) return *held_;
-  std::vector<char> fixed = form_.constraints().fixed;
-  const fem::LagrangeSpace<dim>& space = form_.space();
-  const auto hold = [&](const contact::SegmentSide<dim>& side)
-  {
-    const mesh::BoundaryFacet& facet = side.facet;
-    for (int i = 0; i < space.basis().n_nodes(); ++i)
-      for (int a = 0; a < dim && space.basis().node(i)[facet.local] == 0; ++a)
-        fixed[dim * space.cell_nodes(facet.cell)[i] + a] = 1;
-  };
-  for (const contact::ContactSegment<dim>& segment : form_.segments()) segment.for_each_side(hold);
-  space.update(std::span(fixed));
-  held_ = std::make_unique<ElasticSystem<dim>>(form_.problem(), space, std::move(fixed), solver_);
-  return *held_;
-}
-
-template <int dim>
-const DualProblem<dim>& DualSystems<dim>::unloaded()
-{
-  if (!unloaded_)
-    unloaded_ =
-        std::make_unique<DualProblem<dim>>(form_, without_loads<dim>(form_.problem(), form_.space().mesh()));
-  return *unloaded_;
-}
-
 template class DualProblem<2>;
 template class DualProblem<3>;
-template class DualSystems<2>;
-template class DualSystems<3>;
 template problem::Problem<2> without_loads(const problem::Problem<2>&, const mesh::Mesh<2>&);
 template problem::Problem<3> without_loads(const problem::Problem<3>&, const mesh::Mesh<3>&);
 template problem::Problem<2> with_loads(const problem::Problem<2>&, const mesh::Mesh<2>&);

@@ -11,7 +11,6 @@
 
 #include "tribound/certify/energy/contact_resultant.h"
 #include "tribound/certify/energy/dual_products.h"
-#include "tribound/certify/energy/elastic_system.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
@@ -53,28 +52,5 @@ template <int dim>
 template <int dim>
 [[nodiscard]] problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem,
                                                  const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q);
-
-/// The systems a(z, w) = ... with Gamma_C free, or held on both sides like Gamma_D; made when first needed.
-template <int dim>
-class DualSystems
-{
- public:
-  DualSystems(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver)
-      : form_(form), solver_(solver)
-  {
-  }
-
-  [[nodiscard]] const ElasticSystem<dim>& with_free_contact();
-  [[nodiscard]] const ElasticSystem<dim>& with_held_contact();
-  /// Without loads.
-  [[nodiscard]] const DualProblem<dim>& unloaded();
-
- private:
-  const contact::NitscheForm<dim>& form_;
-  algebra::SolverOptions solver_;
-  std::unique_ptr<ElasticSystem<dim>> free_;
-  std::unique_ptr<ElasticSystem<dim>> held_;
-  std::unique_ptr<DualProblem<dim>> unloaded_;
-};
 
 }  // namespace tribound::certify

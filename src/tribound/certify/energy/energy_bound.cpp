@@ -104,9 +104,11 @@ EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<con
 template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
-  Parts(const contact::NitscheForm<dim>& given, PatchStress patches)
+  Parts(const contact::NitscheForm<dim>& given, const algebra::SolverOptions& solver, bool has_quantities,
+        PatchStress patches)
       : form(given.space().degree() >= lowest_degree ? given : richer(given)),
         equilibrator(form, patches),
+        systems(form, solver, has_quantities),
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
@@ -126,6 +128,7 @@ struct EnergyEstimator<dim>::Parts
   std::optional<contact::NitscheForm<dim>> rich_form;
   const contact::NitscheForm<dim>& form;
   mutable Equilibrator<dim> equilibrator;
+  mutable ContactSystems<dim> systems;
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
@@ -142,11 +145,11 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
-  parts_ = std::make_unique<Parts>(form, patches);
+  parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
   if (reason_.empty() && quantities_)
-    quantities_->prepare(parts_->form, parts_->facets, solver, parts_->motions.size() == 0);
+    quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
 
 template <int dim>
@@ -237,8 +240,8 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const std::optional<AdmissibleTraction<dim>> traction = balanced_traction<dim>(form, parts_->motions, t);
   if (!traction) return {.reason = "no contact traction was found that obeys the law and holds a body"};
   const AdmissibleTraction<dim>& t_h = *traction;
-  const std::vector<double> balanced =
-      balanced_solution<dim>(form, form_.space(), u, t_h.at_points, parts_->motions, solver_);
+  const std::vector<double> balanced = balanced_solution<dim>(form, form_.space(), u, t_h.at_points,
+                                                              parts_->motions, solver_, parts_->systems);
   std::vector<Tensor<dim>> turning;
   if (is_raised)
     turning = edge_moments<dim>(

@@ -11,9 +11,14 @@ namespace tribound::certify
 {
 
 template <int dim>
-LinearIntervals<dim>::LinearIntervals(const BoundedState<dim>& state, DualSystems<dim>& systems,
-                                      const algebra::SolverOptions& solver, bool is_held)
-    : state_(state), systems_(systems), slack_(state), basis_(state.form.space().degree())
+LinearIntervals<dim>::LinearIntervals(const BoundedState<dim>& state, ContactSystems<dim>& systems,
+                                      const DualProblem<dim>* unloaded, bool is_held)
+    : state_(state),
+      systems_(systems),
+      unloaded_(unloaded),
+      is_held_(is_held),
+      slack_(state),
+      basis_(state.form.space().degree())
 {
   if (!is_held) return;
   double stiffest = 0;
@@ -21,8 +26,7 @@ LinearIntervals<dim>::LinearIntervals(const BoundedState<dim>& state, DualSystem
     stiffest = std::max(stiffest, segment.gamma);
   constexpr double stiff = 10;  // so that springs hold like conditions, up to a negligible part
   stiffness_ = stiff * state.form.space().mesh().ranks().max(stiffest);
-  held_ = std::make_unique<ElasticSystem<dim>>(state.form.problem(), state.form.space(),
-                                               state.form.constraints().fixed, solver, springs());
+  systems_.set_springs(springs());
 }
 
 template <int dim>
@@ -130,13 +134,13 @@ auto LinearIntervals<dim>::natural(const LinearNumber<dim>& number) const -> Nat
 {
   const fem::LagrangeSpace<dim>& space = state_.form.space();
   const std::vector<double> none(space.n_dofs(), 0.0);
-  if (!held_)
+  if (!is_held_)
     return {none, none, std::vector<Point<dim>>(state_.t_h.coefficients.size(), Point<dim>::Zero())};
-  const DualProblem<dim>& dual = number.loads ? *number.loads : systems_.unloaded();
+  const DualProblem<dim>& dual = number.loads ? *number.loads : *unloaded_;
   std::vector<Point<dim>> t(state_.form.n_contact_points(), Point<dim>::Zero());
   if (number.weight) t = at_points(exerted(number.weight->at_nodes));
   constexpr double near = 1e-8;
-  const std::vector<double> z = held_->solve(dual.load(t), none, near);
+  const std::vector<double> z = systems_.solve(OnContact::springs, dual.load(t), none, near);
   std::vector<double> y = z;
   if (number.weight)
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += number.weight->at_nodes[i];
@@ -231,7 +235,7 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
                                          std::string& reason) const
 {
   const fem::LagrangeSpace<dim>& space = state_.form.space();
-  const DualProblem<dim>& dual = number.loads ? *number.loads : systems_.unloaded();
+  const DualProblem<dim>& dual = number.loads ? *number.loads : *unloaded_;
   constexpr double near = 1e-8;  // any z will do
   constexpr double tight = 1e-12;
   slack_.limit_y(m, natural.y);
@@ -240,10 +244,10 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
     slack_.limit_r(k, m, std::span(natural.r).subspan(k * n, n));
   const std::vector<Point<dim>> t = at_points(natural.r);
   const std::vector<double> load = dual.load(t);
-  DualPair<dim> result{.z = systems_.with_held_contact().solve(load, trace(number, natural), near)};
+  DualPair<dim> result{.z = systems_.solve(OnContact::held, load, trace(number, natural), near)};
   if (!fits(number, natural, result.z)) reason = "a dual displacement does not fit at the contact boundary";
   if (!(space.norm(load) > 0)) return result;
-  result.target = systems_.with_free_contact().solve(load, std::vector<double>(space.n_dofs(), 0.0), tight);
+  result.target = systems_.solve(OnContact::free, load, std::vector<double>(space.n_dofs(), 0.0), tight);
   result.stress = dual.balanced(result.target, t, reason);
   return result;
 }
@@ -270,7 +274,7 @@ LinearInterval LinearIntervals<dim>::operator()(const LinearNumber<dim>& number,
   result.upper = first.centre + first.radius;
   result.rounding = first.rounding;
   result.cells = first.cells;
-  if (!held_ || !result.reason.empty() || !(first.radius > 0 && mid > 0)) return result;
+  if (!is_held_ || !result.reason.empty() || !(first.radius > 0 && mid > 0)) return result;
   double smallest = first.radius;
   double m = first.radius / (mid * mid);  // with this m the radius cannot be smaller
   constexpr int most_attempts = 3;

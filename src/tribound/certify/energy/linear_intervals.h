@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tribound/certify/energy/contact_slack.h"
+#include "tribound/certify/energy/contact_systems.h"
 #include "tribound/certify/energy/linear_number.h"
 
 namespace tribound::certify
@@ -33,8 +34,9 @@ class LinearIntervals
  public:
   /// Keeps references. `is_held`: displacement conditions alone hold every body. If not, there are no
   /// intervals of numbers with loads; for others m = 0 and zeta = 0.
-  LinearIntervals(const BoundedState<dim>& state, DualSystems<dim>& systems,
-                  const algebra::SolverOptions& solver, bool is_held);
+  /// `unloaded`: for numbers without loads, null if there are none.
+  LinearIntervals(const BoundedState<dim>& state, ContactSystems<dim>& systems,
+                  const DualProblem<dim>* unloaded, bool is_held);
 
   /// Uses m = 0, then m > 0 as long as the width decreases. `base`: as for linear_bound().
   [[nodiscard]] LinearInterval operator()(const LinearNumber<dim>& number, double base) const;
@@ -65,11 +67,12 @@ class LinearIntervals
   [[nodiscard]] std::vector<Point<dim>> at_points(std::span<const Point<dim>> coefficients) const;
 
   const BoundedState<dim>& state_;
-  DualSystems<dim>& systems_;
+  ContactSystems<dim>& systems_;
+  const DualProblem<dim>* unloaded_;
+  bool is_held_;
   ContactSlack<dim> slack_;
   fem::LagrangeBasis<dim - 1> basis_;
-  double stiffness_ = 0;                      ///< of the springs
-  std::unique_ptr<ElasticSystem<dim>> held_;  ///< null: displacement conditions do not hold every body
+  double stiffness_ = 0;  ///< of the springs
 };
 
 }  // namespace tribound::certify

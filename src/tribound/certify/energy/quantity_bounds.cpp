@@ -71,11 +71,10 @@ bool slides_freely(const contact::NitscheForm<dim>& form)
 
 template <int dim>
 void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, const ObstacleFacets<dim>& facets,
-                                  const algebra::SolverOptions& solver, bool is_held)
+                                  ContactSystems<dim>& systems, bool is_held)
 {
-  solver_ = solver;
+  systems_ = &systems;
   is_held_ = is_held;
-  systems_ = std::make_unique<DualSystems<dim>>(bounded, solver);
   is_homogeneous_ = is_homogeneous(bounded);
   work_is_energy_ = is_homogeneous_ && slides_freely(bounded);
   std::optional<ContactWeights<dim>> weights;
@@ -96,6 +95,10 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, cons
                                             item.parts.resultants[i], item.parts.quantity.ramp);
       if (!reason.empty()) item.reason = reason;
     }
+    if (!unloaded_ && std::ranges::any_of(item.numbers, [](const LinearNumber<dim>& number)
+                                          { return !number.known && !number.loads; }))
+      unloaded_ = std::make_unique<DualProblem<dim>>(
+          bounded, without_loads<dim>(bounded.problem(), bounded.space().mesh()));
   }
 }
 
@@ -212,7 +215,7 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       set_energy<dim>(state, is_homogeneous_, interval);
     else
     {
-      if (!of_numbers) of_numbers.emplace(state, *systems_, solver_, is_held_);
+      if (!of_numbers) of_numbers.emplace(state, *systems_, unloaded_.get(), is_held_);
       std::vector<QuantityInterval> numbers;
       for (const LinearNumber<dim>& number : item.numbers)
       {

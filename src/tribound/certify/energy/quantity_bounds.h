@@ -25,10 +25,11 @@ class QuantityBounds
   QuantityBounds(const QuantityBounds&) = delete;
   QuantityBounds& operator=(const QuantityBounds&) = delete;
 
-  /// Prepares what energy bounds of this form, on the same mesh and of no lower degree, need. `is_held`:
-  /// whether displacement conditions alone hold every body. Throws SolveError.
+  /// Prepares what energy bounds of this form, on the same mesh and of no lower degree, need; keeps a
+  /// reference to its systems. `is_held`: whether displacement conditions alone hold every body. Throws
+  /// SolveError.
   void prepare(const contact::NitscheForm<dim>& bounded, const ObstacleFacets<dim>& facets,
-               const algebra::SolverOptions& solver, bool is_held);
+               ContactSystems<dim>& systems, bool is_held);
   /// The values for u and the intervals that follow from equilibrium alone; `reason` says why there are no
   /// others.
   [[nodiscard]] std::vector<QuantityInterval> from_equilibrium(std::span<const double> u,
@@ -49,11 +50,11 @@ class QuantityBounds
 
   const contact::NitscheForm<dim>& form_;
   std::vector<Item> items_;
-  algebra::SolverOptions solver_{};
-  std::unique_ptr<DualSystems<dim>> systems_;
-  bool is_held_ = false;         ///< by displacement conditions alone
-  bool is_homogeneous_ = false;  ///< u_D = 0 and g = 0
-  bool work_is_energy_ = false;  ///< L(u) = a(u, u): homogeneous and without friction
+  ContactSystems<dim>* systems_ = nullptr;
+  std::unique_ptr<DualProblem<dim>> unloaded_;  ///< if there are numbers without loads
+  bool is_held_ = false;                        ///< by displacement conditions alone
+  bool is_homogeneous_ = false;                 ///< u_D = 0 and g = 0
+  bool work_is_energy_ = false;                 ///< L(u) = a(u, u): homogeneous and without friction
 };
 
 }  // namespace tribound::certify

@@ -1,0 +1,125 @@
+#include "tribound/certify/energy/contact_systems.h"
+
+#include <utility>
+
+#include "tribound/base/error.h"
+#include "tribound/base/rank_failure.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/solve/equilibrium.h"
+
+namespace tribound::certify
+{
+
+template <int dim>
+ContactSystems<dim>::ContactSystems(const contact::NitscheForm<dim>& form,
+                                    const algebra::SolverOptions& solver, bool many)
+    : form_(form),
+      solver_(solver),
+      may_condense_(many && dim == 2 &&
+                    solve::choose_method(form, solver, true) == algebra::LinearMethod::condensed)
+{
+}
+
+template <int dim>
+void ContactSystems<dim>::set_springs(algebra::Triplets springs)
+{
+  springs_ = std::move(springs);
+  systems_[static_cast<int>(OnContact::springs)].reset();
+}
+
+/// Keeps Gamma_C and one more unknown: there must be a layer, and these systems need none.
+template <int dim>
+void ContactSystems<dim>::condense()
+{
+  may_condense_ = false;
+  solve::CondensedDofs dofs = solve::condensed_dofs(form_);
+  const Ranks& ranks = form_.space().mesh().ranks();
+  try
+  {
+    const std::vector<double> none(form_.space().n_dofs(), 0.0);
+    if (!dofs.layer.empty()) dofs.layer.resize(1);
+    condensed_ = std::make_unique<algebra::Condensation>(
+        dim, contact::stiffness(form_.problem(), form_.space(), form_.constraints()), std::move(dofs.layer),
+        std::move(dofs.trace), none, form_.space().numbers());
+  }
+  catch (const SolveError& error)  // one system after another may still be possible
+  {
+    require_all_failed(ranks, error.what());
+  }
+}
+
+template <int dim>
+std::vector<char> ContactSystems<dim>::fixed(OnContact how) const
+{
+  std::vector<char> result = form_.constraints().fixed;
+  if (how != OnContact::held) return result;
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const auto hold = [&](const contact::SegmentSide<dim>& side)
+  {
+    const mesh::BoundaryFacet& facet = side.facet;
+    for (int i = 0; i < space.basis().n_nodes(); ++i)
+      for (int a = 0; a < dim && space.basis().node(i)[facet.local] == 0; ++a)
+        result[dim * space.cell_nodes(facet.cell)[i] + a] = 1;
+  };
+  for (const contact::ContactSegment<dim>& segment : form_.segments()) segment.for_each_side(hold);
+  space.update(std::span(result));
+  return result;
+}
+
+template <int dim>
+const ElasticSystem<dim>& ContactSystems<dim>::system(OnContact how)
+{
+  std::unique_ptr<ElasticSystem<dim>>& system = systems_[static_cast<int>(how)];
+  if (!system)
+    system = std::make_unique<ElasticSystem<dim>>(form_.problem(), form_.space(), fixed(how), solver_,
+                                                  how == OnContact::springs ? springs_ : algebra::Triplets{});
+  return *system;
+}
+
+template <int dim>
+std::vector<double> ContactSystems<dim>::solve(OnContact how, std::span<const double> b,
+                                               std::span<const double> start, double tolerance)
+{
+  if (may_condense_) condense();
+  if (condensed_)
+    if (std::optional<std::vector<double>> u = solve_condensed(how, b, start, tolerance)) return *u;
+  return system(how).solve(b, start, tolerance);
+}
+
+template <int dim>
+std::optional<std::vector<double>> ContactSystems<dim>::solve_condensed(OnContact how,
+                                                                        std::span<const double> b,
+                                                                        std::span<const double> start,
+                                                                        double tolerance)
+{
+  constexpr int most_attempts = 3;
+  const fem::LagrangeSpace<dim>& space = form_.space();
+  const std::vector<char> fixed = this->fixed(how);
+  std::vector<double> u(start.begin(), start.end());
+  double scale = 0;
+  for (int attempt = 0;; ++attempt)
+  {
+    std::vector<double> r = contact::apply_stiffness(form_.problem(), space, u);
+    if (attempt == 0) scale = space.norm(b) + space.norm(r);
+    if (how == OnContact::springs)
+      for (std::size_t e = 0; e < springs_.rows.size(); ++e)
+        r[springs_.rows[e]] += springs_.values[e] * u[springs_.cols[e]];
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed[i] != 0 ? 0 : b[i] - r[i];
+    if (attempt > 0 && space.norm(r) <= tolerance * scale) return u;
+    if (attempt == most_attempts) return std::nullopt;
+    condensed_->set_load(r);
+    const std::vector<double> x =
+        how == OnContact::held ? std::vector<double>(condensed_->n_trace(), 0.0)
+                               : condensed_->solve(how == OnContact::springs ? springs_ : algebra::Triplets{},
+                                                   condensed_->load(), 0);
+    const std::vector<double> change = condensed_->expand(x);
+    for (std::size_t i = 0; i < u.size(); ++i)
+      if (fixed[i] == 0) u[i] += change[i];
+    space.update(std::span(u));
+  }
+}
+
+template class ContactSystems<2>;
+template class ContactSystems<3>;
+
+}  // namespace tribound::certify

@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file contact_systems.h
+/// Linear elasticity with different conditions on the contact boundary.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tribound/algebra/condensation.h"
+#include "tribound/certify/energy/elastic_system.h"
+#include "tribound/contact/nitsche/nitsche.h"
+
+namespace tribound::certify
+{
+
+/// What is required of the solution on Gamma_C, on both sides of pairs.
+enum class OnContact
+{
+  free,
+  held,    ///< its values are given, like those on Gamma_D
+  springs  ///< free, with springs
+};
+
+/// a(u, w) + s(u, w) = b(w) as in ElasticSystem, in the space of a form, for each OnContact; displacement
+/// conditions must hold every body where Gamma_C does not. In 2D one factorisation serves all: Gamma_C is
+/// condensed out. Otherwise there is a system for each, made when it is first needed.
+template <int dim>
+class ContactSystems
+{
+ public:
+  /// The form must outlive the object. `many`: more than one of them will be needed.
+  ContactSystems(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver, bool many);
+
+  /// s, entries between free degrees of freedom of Gamma_C; for OnContact::springs alone.
+  void set_springs(algebra::Triplets springs);
+  /// As ElasticSystem::solve().
+  [[nodiscard]] std::vector<double> solve(OnContact how, std::span<const double> b,
+                                          std::span<const double> start, double tolerance);
+
+ private:
+  void condense();
+  [[nodiscard]] std::vector<char> fixed(OnContact how) const;
+  [[nodiscard]] const ElasticSystem<dim>& system(OnContact how);
+  /// Nothing if rounding is larger than the tolerance.
+  [[nodiscard]] std::optional<std::vector<double>> solve_condensed(OnContact how, std::span<const double> b,
+                                                                   std::span<const double> start,
+                                                                   double tolerance);
+
+  const contact::NitscheForm<dim>& form_;
+  algebra::SolverOptions solver_;
+  bool may_condense_;
+  algebra::Triplets springs_;
+  std::unique_ptr<algebra::Condensation> condensed_;
+  std::array<std::unique_ptr<ElasticSystem<dim>>, 3> systems_;
+};
+
+}  // namespace tribound::certify
