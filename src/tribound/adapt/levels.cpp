@@ -71,7 +71,8 @@ Levels<dim>::Levels(const problem::Problem<dim>& problem, const Method& method, 
       current_(std::move(first)),
       start_(std::move(u)),
       accuracy_(start.accuracy),
-      expected_(start.expected)
+      expected_(start.expected),
+      is_likely_last_(start.is_likely_last)
 {
   level_.delta = start.delta;
   level_.friedrichs = start.friedrichs;
@@ -95,6 +96,7 @@ std::string Levels<dim>::advance(const StepObserver& observer, bool is_last)
     current_ = std::move(discrete_before_);
     start_.clear();
     expected_.reset();
+    is_likely_last_ = false;
   }
   seconds_ = (why.empty() ? 0 : seconds_) + std::exchange(seconds_of_next_, 0) + seconds_since(begin);
   return why;
@@ -148,7 +150,7 @@ std::optional<CertifiedLevel<dim>> Levels<dim>::solve(const StepObserver& observ
   {
     const StepObserver watching = watch(observer, !is_first);
     std::optional<CertifiedLevel<dim>> level;
-    if (is_last) level = solve_to_the_end(watching);
+    if (is_last || is_likely_last_) level = solve_to_the_end(watching);
     if (!level)
       level = solve_and_certify<dim>(current_->form, start_, method_, watching, level_.delta, expected_,
                                      level_.friedrichs);
@@ -276,6 +278,22 @@ bool Levels<dim>::bound_energy()
   return true;
 }
 
+namespace
+{
+
+/// A bound of this part of the tolerance is expected to meet it.
+constexpr double likely = 0.9;
+
+/// The mesh after this one, if it grows as much.
+NextMesh one_more(NextMesh mesh)
+{
+  mesh.cells = static_cast<std::int64_t>(static_cast<double>(mesh.cells) * mesh.growth);
+  mesh.dofs = static_cast<std::int64_t>(static_cast<double>(*mesh.dofs) * mesh.growth);
+  return mesh;
+}
+
+}  // namespace
+
 template <int dim>
 std::string Levels<dim>::refine(const Marker<dim>& mark, const MeshLimit& limit)
 {
@@ -320,7 +338,11 @@ std::string Levels<dim>::try_to_refine(const Marker<dim>& mark, const MeshLimit&
   start_ = std::move(finer.carry(next->space).front());
   seconds.transfer = lap();
   refinement_ = seconds;
-  expected_ = level_.estimate.global.discretisation() * std::pow(is_next.growth, -1.0 * method_.degree / dim);
+  const double falls_to = std::pow(is_next.growth, -1.0 * method_.degree / dim);
+  expected_ = level_.estimate.global.discretisation() * falls_to;
+  const bool meets_tolerance =
+      level_.estimate.total_sharp * falls_to <= likely * tolerance_ * level_.norms.sigma;
+  is_likely_last_ = meets_tolerance || (limit && !limit(one_more(is_next)).empty());
   has_stress_ = false;
   level_.stress = {};
   level_.estimate = {};

@@ -45,6 +45,7 @@ struct LevelStart
   double delta = 0;                  ///< of the regularised variant
   double accuracy = 0;               ///< of the data, DataAccuracy::absolute
   std::optional<double> expected{};  ///< of solve_and_certify()
+  bool is_likely_last = false;       ///< by the expected bound and size, no mesh will follow
   std::optional<certify::FriedrichsConstant> friedrichs{};
 };
 
@@ -100,7 +101,7 @@ class Levels
   /// What that level starts from, and the transferred solution; between refine() and advance().
   [[nodiscard]] LevelStart start() const
   {
-    return {number_ + 1, level_.delta, accuracy_, expected_, level_.friedrichs};
+    return {number_ + 1, level_.delta, accuracy_, expected_, is_likely_last_, level_.friedrichs};
   }
   [[nodiscard]] std::span<const double> start_displacement() const { return start_; }
 
@@ -108,7 +109,7 @@ class Levels
   /// failure the previous level is the last again, without its stress and estimate: finish() may then be
   /// called, refine() may not. Throws SolveError and bad_alloc for the first level. `is_last`: no other level
   /// will follow, whatever the bound. finish() is then included, and bounds that only the stopping criterion
-  /// needs are omitted.
+  /// needs are omitted. The same where that is likely.
   [[nodiscard]] std::string advance(const StepObserver& observer = {}, bool is_last = false);
 
   /// Lets Newton's method converge to newton.tolerance on the last level (newton.finish), as far as it does
@@ -175,6 +176,7 @@ class Levels
   RefinementSeconds refinement_;
   double seconds_of_next_ = 0;
   std::optional<double> expected_;  ///< BoundComponents::discretisation() expected on the current mesh
+  bool is_likely_last_ = false;
 };
 
 }  // namespace tribound::adapt

@@ -67,6 +67,7 @@ Json state_json(const CheckpointFacts& facts)
                {"functions", facts.n_functions},
                {"cell_values", facts.n_cell_values}};
   if (start.expected) json["expected"] = *start.expected;
+  json["is_likely_last"] = start.is_likely_last;
   if (const auto& c = start.friedrichs; c && std::isfinite(c->theta))  // JSON has no infinity
     json["friedrichs"] = {std::isfinite(c->value) ? c->value : 0, c->theta, c->mesh_size, c->cells};
   return json;
@@ -87,6 +88,7 @@ CheckpointFacts facts_of(const Json& json)
   facts.n_functions = json.at("functions");
   facts.n_cell_values = json.at("cell_values");
   if (json.contains("expected")) facts.start.expected = json.at("expected").get<double>();
+  facts.start.is_likely_last = json.value("is_likely_last", false);
   if (json.contains("friedrichs"))
   {
     const Json& c = json.at("friedrichs");
