@@ -127,7 +127,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
     for (int a = 0; a < dim; ++a)
     {
       result[i][a] = of_augmented[i][a];
-      result[i][dim + a] = of_dis[i][a];
+      result[i][second + a] = of_dis[i][a];
     }
   return result;
 }
@@ -177,8 +177,8 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const problem::ContactLaw& law = segment.contact->law;
   const double tangential_weight = problem::tangential_weight(law);
   Integrals result;
-  std::vector<problem::LawPoint<dim>> law_points;
-  law_points.reserve(rule.size());
+  const std::vector<problem::LawPoint<dim>> law_points =
+      form_.law_points(k, points.points, points.places, points.normals);
   std::vector<Point<dim>> augmented(rule.size());
   std::vector<Point<dim>> projected(rule.size());
   for (int q = 0; q < rule.size(); ++q)
@@ -189,8 +189,8 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     const double closing = segment.gamma * points.gaps[q];
     const Point<dim>& p = augmented[q] = closing * n + augmented_of(values);
     projected[q] = dis_of(values);
-    const auto& point = law_points.emplace_back(form_.law_point(k, points.points[q], points.places[q], n));
-    result.round_off = std::max(result.round_off, 1e-14 * (p.norm() + std::abs(closing) + point.water));
+    result.round_off =
+        std::max(result.round_off, 1e-14 * (p.norm() + std::abs(closing) + law_points[q].water));
   }
   std::vector<Point<dim>> tractions(rule.size());
   problem::tractions<dim>(law, law_points, augmented, tractions);

@@ -72,14 +72,15 @@ class ContactTerms
   static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree);
 
   /// Coefficients of {sigma(u)} - gamma [u], which is P(u) without the gap, then of Pi_k T.
-  using Pair = DenseVector<2 * dim>;
+  static constexpr int second = padded(dim);
+  using Pair = DenseVector<2 * second>;
   [[nodiscard]] static Eigen::Map<const Point<dim>> augmented_of(const Pair& pair)
   {
     return Eigen::Map<const Point<dim>>(pair.data());
   }
   [[nodiscard]] static Eigen::Map<const Point<dim>> dis_of(const Pair& pair)
   {
-    return Eigen::Map<const Point<dim>>(pair.data() + dim);
+    return Eigen::Map<const Point<dim>>(pair.data() + second);
   }
   /// Vector polynomials of degree p on a piece, in the orthonormal basis of the reference simplex in the
   /// coordinates of the piece.

@@ -90,15 +90,25 @@ void NitscheForm<dim>::set_history(std::shared_ptr<const ContactHistory<dim>> hi
 }
 
 template <int dim>
-problem::LawPoint<dim> NitscheForm<dim>::law_point(std::size_t k, const Point<dim - 1>& s,
-                                                   const Point<dim>& x, const Point<dim>& n) const
+std::vector<problem::LawPoint<dim>> NitscheForm<dim>::law_points(std::size_t k,
+                                                                 std::span<const Point<dim - 1>> s,
+                                                                 std::span<const Point<dim>> x,
+                                                                 std::span<const Point<dim>> n) const
 {
   const problem::ContactLaw& law = segments_[k].contact->law;
-  problem::LawPoint<dim> point{n, problem::strength_at<dim>(law, x), segments_[k].gamma,
-                               history_ ? history_->at(law, k, s) : problem::fresh_state<dim>(law),
-                               problem::water_at<dim>(*segments_[k].contact, x)};
-  point.state.slip -= point.state.slip.dot(n) * n;
-  return point;
+  const problem::LawPoint<dim> fresh{
+      .normal = Point<dim>::Zero(), .gamma = segments_[k].gamma, .state = problem::fresh_state<dim>(law)};
+  std::vector<problem::LawPoint<dim>> result(n.size(), fresh);
+  for (std::size_t q = 0; q < n.size(); ++q)
+  {
+    problem::LawPoint<dim>& point = result[q];
+    point.normal = n[q];
+    point.strength = problem::strength_at<dim>(law, x[q]);
+    point.water = problem::water_at<dim>(*segments_[k].contact, x[q]);
+    if (history_) point.state = history_->at(law, k, s[q]);
+    point.state.slip -= point.state.slip.dot(n[q]) * n[q];
+  }
+  return result;
 }
 
 template <int dim>
@@ -255,7 +265,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
     const Point<dim> x = map(table.points[q]);
     const Point<dim> n = segment.normal_at(x);
     const Point<dim - 1>& s = table.points[q];
-    problem::LawPoint<dim> point = is_own ? law_point(k, q) : law_point(k, s, x, n);
+    problem::LawPoint<dim> point = is_own ? law_point(k, q) : law_points(k, {&s, 1}, {&x, 1}, {&n, 1})[0];
     double gap = is_own ? contact_points(k)[q].gap : segment.gap(s, x, n);
     if (!is_own && which == WhichData::discrete)
     {

@@ -123,9 +123,11 @@ class NitscheForm
   {
     return contact_points().subspan(k * n_segment_points(), n_segment_points());
   }
-  /// The arguments of the law of segment k at the point x with coordinates s, where N is n.
-  [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, const Point<dim - 1>& s, const Point<dim>& x,
-                                                 const Point<dim>& n) const;
+  /// The arguments of the law of segment k at points x with coordinates s, where N is n.
+  [[nodiscard]] std::vector<problem::LawPoint<dim>> law_points(std::size_t k,
+                                                               std::span<const Point<dim - 1>> s,
+                                                               std::span<const Point<dim>> x,
+                                                               std::span<const Point<dim>> n) const;
   /// Vectors at the contact points of a segment.
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
   /// {sigma(u)} - gamma [u] at the contact points of segment k: P(u) without the gap.
