@@ -1,6 +1,7 @@
 #include "tribound/certify/energy/elastic_system.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "tribound/algebra/petsc.h"
@@ -12,6 +13,7 @@ namespace tribound::certify
 template <int dim>
 struct ElasticSystem<dim>::Factors
 {
+  std::optional<algebra::SparseMatrix> springs;
   algebra::SparseMatrix matrix;
   algebra::LinearSolver linear;
 };
@@ -36,16 +38,15 @@ void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space
 
 template <int dim>
 algebra::SparseMatrix matrix_of(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                const std::vector<char>& fixed, algebra::Triplets springs,
+                                const std::vector<char>& fixed,
+                                const std::optional<algebra::SparseMatrix>& springs,
                                 std::span<const Index> supports)
 {
   const fem::Constraints constraints{.fixed = fixed, .values = std::vector<double>(fixed.size(), 0.0)};
   algebra::SparseRows rows = contact::stiffness(problem, space, constraints);
   add_springs<dim>(rows, space, supports);
   algebra::SparseMatrix stiffness(dim, std::move(rows), space.numbers());
-  if (!space.mesh().ranks().any(!springs.rows.empty())) return stiffness;
-  const algebra::SparseMatrix added(space.n_dofs(), dim, std::move(springs), space.numbers());
-  return algebra::SparseMatrix::sum(stiffness, added);
+  return springs ? algebra::SparseMatrix::sum(stiffness, *springs) : std::move(stiffness);
 }
 
 }  // namespace
@@ -54,13 +55,15 @@ template <int dim>
 ElasticSystem<dim>::ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                   std::vector<char> fixed, const algebra::SolverOptions& solver,
                                   algebra::Triplets springs, std::span<const Index> supports)
-    : problem_(problem),
-      space_(space),
-      fixed_(std::move(fixed)),
-      factors_(std::make_unique<Factors>(
-          Factors{matrix_of(problem, space, fixed_, std::move(springs), supports),
-                  algebra::LinearSolver(solver, space, algebra::MatrixKind::positive_definite)}))
+    : problem_(problem), space_(space), fixed_(std::move(fixed))
 {
+  std::optional<algebra::SparseMatrix> added;
+  if (space.mesh().ranks().any(!springs.rows.empty()))
+    added.emplace(space.n_dofs(), dim, std::move(springs), space.numbers());
+  algebra::SparseMatrix matrix = matrix_of(problem, space, fixed_, added, supports);
+  factors_ = std::make_unique<Factors>(
+      Factors{std::move(added), std::move(matrix),
+              algebra::LinearSolver(solver, space, algebra::MatrixKind::positive_definite)});
 }
 
 template <int dim>
@@ -70,7 +73,12 @@ template <int dim>
 std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::span<const double> start,
                                               double tolerance) const
 {
-  const std::vector<double> internal = contact::apply_stiffness(problem_, space_, start);
+  std::vector<double> internal = contact::apply_stiffness(problem_, space_, start);
+  if (factors_->springs)
+  {
+    const std::vector<double> of_springs = factors_->springs->multiply(start);
+    for (std::size_t i = 0; i < internal.size(); ++i) internal[i] += of_springs[i];
+  }
   const double scale = space_.norm(b) + space_.norm(internal);
   std::vector<double> r(b.size(), 0.0);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed_[i] != 0 ? 0 : b[i] - internal[i];
