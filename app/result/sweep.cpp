@@ -11,6 +11,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/csv.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/level_json.h"
 
 namespace tribound::app
 {
@@ -150,8 +151,9 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
   }
   double seconds = 0;
   const io::Json times = certificate.value("times", io::Json::object());
-  for (const auto& [stage, value] : times.items())
-    if (stage != "factorisations") seconds += value.get<double>();
+  const io::Json stages = io::stages_json({});
+  for (const auto& [name, value] : times.items())
+    if (name == "setup" || stages.contains(name)) seconds += value.get<double>();
   run.figures.emplace_back("seconds", seconds);
 }
 
