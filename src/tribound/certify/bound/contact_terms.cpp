@@ -135,6 +135,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
 template <int dim>
 struct ContactTerms<dim>::PointsOnPiece
 {
+  const contact::SimplexMap<dim - 1, dim>& map;
   std::span<const FacetPoint> points;
   std::span<const Point<dim>> places;
   std::span<const Point<dim>> normals;
@@ -163,8 +164,9 @@ void ContactTerms<dim>::integrate(int k, std::span<const Fields> fields, std::sp
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     const auto of_piece = [&](const auto& all) { return std::span(all).subspan(i * n_points, n_points); };
-    results[i] = integrate(k, fields[i], pieces[i],
-                           {of_piece(points), of_piece(places), of_piece(normals), of_piece(gaps)}, known);
+    results[i] =
+        integrate(k, fields[i], pieces[i],
+                  {map, of_piece(points), of_piece(places), of_piece(normals), of_piece(gaps)}, known);
   }
 }
 
@@ -195,7 +197,6 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   std::vector<Point<dim>> tractions(rule.size());
   problem::tractions<dim>(law, law_points, augmented, tractions);
   std::vector<double> strengths(rule.size());
-  std::vector<double> closings(rule.size());
   for (int q = 0; q < rule.size(); ++q)
   {
     const problem::LawPoint<dim>& point = law_points[q];
@@ -206,16 +207,14 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     result.tangential += weight * (difference - normal * point.normal).squaredNorm();
     augmented[q] += point.water * point.normal + tangential_weight * point.gamma * point.state.slip;
     strengths[q] = point.strength;
-    closings[q] = segment.gamma * points.gaps[q] + point.water;
   }
   const bool turns = segment.varying_normal != nullptr;
   result.kinks = kinks_(law, points.normals.first(turns ? rule.size() : 1), augmented, strengths,
                         bond_on(form_, k), result.round_off);
   if (!turns) return result;
-  for (int q = 0; q < rule.size(); ++q) augmented[q] -= closings[q] * points.normals[q];
-  result.of_normal = known ? *known
-                           : deviation_on<dim>(contact::simplex_map(form_.space().mesh(), segment.slave),
-                                               *segment.varying_normal, piece);
+  for (int q = 0; q < rule.size(); ++q)
+    augmented[q] -= (segment.gamma * points.gaps[q] + law_points[q].water) * points.normals[q];
+  result.of_normal = known ? *known : deviation_on<dim>(points.map, *segment.varying_normal, piece);
   add_missed(k, piece, augmented, projected, result);
   return result;
 }
