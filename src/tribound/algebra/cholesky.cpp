@@ -1,8 +1,7 @@
 #include "tribound/algebra/cholesky.h"
 
-#include <atomic>
-
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
