@@ -81,10 +81,10 @@ class Certifier
     return level.estimate.global.alg <= gamma * level.estimate.total_sharp;
   }
 
+  /// Of the iterate that complete() was called for last.
   [[nodiscard]] certify::IdentityDefects identities(const CertifiedLevel<dim>& level) const
   {
-    return certify::check_identities<dim>(form_, level.traction, level.stress,
-                                          estimator_.algebraic_remainder(level.u, level.stress));
+    return certify::check_identities<dim>(form_, level.traction, level.stress, rho_);
   }
 
   /// The stress of the iterate and its bound.
@@ -92,7 +92,8 @@ class Certifier
                 CertifiedLevel<dim>& level)
   {
     level.stress = equilibrator_(u, t, step.step.delta);
-    level.estimate = estimator_(u, level.stress);
+    rho_ = estimator_.algebraic_remainder(u, level.stress);
+    level.estimate = estimator_(u, level.stress, rho_);
     level.friedrichs = estimator_.friedrichs();
     level.norms = contact::stress_norms(form_.problem(), form_.space(), u);
     step.bound = level.estimate.bound();
@@ -120,6 +121,7 @@ class Certifier
   std::optional<double> stress_;  ///< ||sigma(u^1)||
   certify::Equilibrator<dim> equilibrator_;
   certify::Estimator<dim> estimator_;
+  certify::AffineFields<dim> rho_;
 };
 
 }  // namespace tribound::adapt

@@ -66,7 +66,8 @@ Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rul
 }
 
 template <int dim>
-Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>& stress, int n_threads) const
+Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>& stress,
+                                    const AffineFields<dim>& rho, int n_threads) const
 {
   Estimate result;
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
@@ -83,9 +84,8 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
         contact_terms(u, stress, result);
         transfer_terms(u, stress, result);
       });
-  const double alg = std::isfinite(friedrichs_.value)
-                         ? algebraic_error<dim>(mesh, algebraic_remainder(u, stress), friedrichs_.value)
-                         : 0;
+  const double alg =
+      std::isfinite(friedrichs_.value) ? algebraic_error<dim>(mesh, rho, friedrichs_.value) : 0;
   add_up(result, data_.missed > 0 ? friedrichs_.value * data_.missed : 0, alg, mesh.ranks());
   return result;
 }

@@ -59,10 +59,16 @@ class Estimator
            field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual, patches));
   }
 
-  /// The components of the iterate u with its equilibrated stress. Cells are distributed over `n_threads`
-  /// threads (0: as many as OpenMP offers).
+  /// The components of the iterate u with its equilibrated stress and rho. Cells are distributed over
+  /// `n_threads` threads (0: as many as OpenMP offers).
   [[nodiscard]] Estimate operator()(std::span<const double> u, const Stress<dim>& stress,
-                                    int n_threads = 0) const;
+                                    const AffineFields<dim>& rho, int n_threads = 0) const;
+  /// The same with rho computed anew.
+  [[nodiscard]] Estimate operator()(std::span<const double> u, const Stress<dim>& stress,
+                                    int n_threads = 0) const
+  {
+    return (*this)(u, stress, algebraic_remainder(u, stress), n_threads);
+  }
 
   /// The global lin1, lin2n and lin2t of an iterate, from its sigma_lin alone; the others are 0.
   [[nodiscard]] BoundComponents linearisation(const Stress<dim>& stress) const;
