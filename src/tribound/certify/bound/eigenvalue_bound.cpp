@@ -100,40 +100,4 @@ double proved_theta(Pencil pencil, int dim)
   return 0;
 }
 
-std::vector<double> potential_means(Pencil pencil)
-{
-  constexpr double tolerance = 1e-2;  // C_F grows by less than this
-  constexpr int max_steps = 5000;
-  const auto n = static_cast<std::size_t>(pencil.n);
-  std::vector<double> r(n, 0.0);
-  for (std::size_t k = 0; k < pencil.m.size(); ++k) r[pencil.a.rows[k]] += pencil.m[k];
-  const algebra::SparseMatrix a(pencil.n, 1, std::move(pencil.a));
-  const std::vector<double> diagonal = a.diagonal();
-  std::vector<double> x(n, 0.0);
-  std::vector<double> z(n);
-  std::vector<double> p(n, 0.0);
-  double first = 0;
-  double rz = 0;
-  for (int step = 0; step < max_steps; ++step)
-  {
-    for (std::size_t i = 0; i < n; ++i) z[i] = r[i] / diagonal[i];
-    const double before = rz;
-    rz = dot(r, z);
-    if (step == 0) first = rz;
-    if (!(rz > tolerance * tolerance * first)) break;
-    for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + (step > 0 ? rz / before : 0) * p[i];
-    const std::vector<double> ap = a.multiply(p);
-    const double length = rz / dot(p, ap);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      x[i] += length * p[i];
-      r[i] -= length * ap[i];
-    }
-  }
-  std::vector<double> means(pencil.number.size(), 0.0);
-  for (std::size_t f = 0; f < means.size(); ++f)
-    if (pencil.number[f] >= 0) means[f] = std::max(0.0, x[pencil.number[f]]);
-  return means;
-}
-
 }  // namespace tribound::certify

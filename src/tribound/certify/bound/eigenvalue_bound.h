@@ -24,7 +24,4 @@ struct Pencil
 /// possible; 0 if there is none. The proof needs only the factorisation, not the eigenvalue.
 [[nodiscard]] double proved_theta(Pencil pencil, int dim);
 
-/// Approximate facet means of phi with A phi = M 1, by conjugate gradients with diagonal preconditioning.
-[[nodiscard]] std::vector<double> potential_means(Pencil pencil);
-
 }  // namespace tribound::certify

@@ -11,6 +11,7 @@
 #include "tribound/certify/bound/eigenvalue_bound.h"
 #include "tribound/certify/bound/friedrichs_flux.h"
 #include "tribound/certify/bound/friedrichs_pairs.h"
+#include "tribound/certify/bound/friedrichs_potential.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/support/assembly.h"
 #include "tribound/fem/space.h"
@@ -185,7 +186,10 @@ FriedrichsConstant without_factors(const problem::Problem<dim>& problem, const m
   const double theta = theta_of_components<dim>(
       problem, {mesh, 1},
       [&](const std::vector<char>& fixed, Pencil pencil)
-      { return flux_theta<dim>(problem, mesh, fixed, potential_means(std::move(pencil))); });
+      {
+        return flux_theta<dim>(problem, mesh, fixed,
+                               potential_means<dim>(problem, mesh, fixed, std::move(pencil)));
+      });
   return {1 / std::sqrt(theta), theta, 0, mesh.n_cells()};
 }
 

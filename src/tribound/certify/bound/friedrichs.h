@@ -4,8 +4,6 @@
 /// A guaranteed upper bound of the Friedrichs constant of a mesh and its boundary conditions: it bounds a
 /// function by its gradient and its trace on Gamma_C.
 
-#include <limits>
-
 #include "tribound/base/types.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
@@ -26,10 +24,10 @@ struct FriedrichsConstant
 template <int dim>
 [[nodiscard]] double friedrichs_kappa();
 
-/// With more cells than this the proof uses no factorisation. For a cube of Kuhn's tetrahedra, one component,
-/// seconds of a core with factors and without: 105 000 cells 10 and 1.4; 304 000 cells 40 and 6, where the
-/// factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times as large; it multiplies
-/// small numbers.
+/// With more cells than this the proof uses no factorisation, nor a refined mesh. For a cube of Kuhn's
+/// tetrahedra, one component, seconds of a core with factors and without: 105 000 cells 10 and 1.4; 304 000
+/// cells 40 and 6, where the factors take 1.8 GB and the rest 0.35. The constant without them was 1.4 times
+/// as large; it multiplies small numbers.
 inline constexpr Index most_cells_factorised = 20'000;
 
 /// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
