@@ -96,9 +96,12 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
   std::array<double, 3> sums{};
   auto& [lin1, lin2n, lin2t] = sums;
   for (const double x : stress.lin) lin1 += x * x;
-  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
+  std::vector<ContactSquares> facets(form_.n_owned_segments());
+  parallel_for(
+      facets.size(),
+      [&](std::size_t k) { facets[k] = contact_.linearisation(static_cast<int>(k), stress.tractions); }, 1);
+  for (const ContactSquares& facet : facets)
   {
-    const ContactSquares facet = contact_.linearisation(static_cast<int>(k), stress.tractions);
     lin2n += facet.lin2n;
     lin2t += facet.lin2t;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "tribound/base/parallel.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -97,18 +98,23 @@ double flux_theta(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& m
 {
   const std::vector<double> potential = potential_fluxes(mesh, means);
   const std::vector<double> largest = largest_fluxes(problem, mesh, fixed);
-  std::vector<double> fluxes(potential.size());
-  constexpr int n_tries = 24;
   constexpr double rounding = 1e-6;
-  double theta = 0;
-  double c = std::ranges::max(means) / 64;
-  for (int k = 0; k < n_tries; ++k, c *= 1.5)
+  const double least = std::ranges::max(means) / 64;
+  std::array<double, 24> thetas{};
+  const int n_threads = max_threads();
+  const auto on_thread = [&](int thread)
   {
-    for (std::size_t f = 0; f < fluxes.size(); ++f)
-      fluxes[f] = std::min(potential[f] / (means[f] + c), largest[f]);
-    theta = std::max(theta, (1 - rounding) * smallest_value(mesh, fluxes));
-  }
-  return theta;
+    std::vector<double> fluxes(potential.size());
+    for (std::size_t k = thread; k < thetas.size(); k += n_threads)
+    {
+      const double c = least * std::pow(1.5, k);
+      for (std::size_t f = 0; f < fluxes.size(); ++f)
+        fluxes[f] = std::min(potential[f] / (means[f] + c), largest[f]);
+      thetas[k] = (1 - rounding) * smallest_value(mesh, fluxes);
+    }
+  };
+  in_threads(n_threads, on_thread);
+  return std::max(0.0, std::ranges::max(thetas));
 }
 
 template double flux_theta(const problem::Problem<2>&, const mesh::Mesh<2>&, std::span<const char>,
