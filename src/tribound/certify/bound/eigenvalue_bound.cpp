@@ -3,24 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "tribound/algebra/cholesky.h"
 #include "tribound/base/dense_factors.h"
+#include "tribound/base/norm.h"
 
 namespace tribound::certify
 {
 
 namespace
 {
-
-double dot(std::span<const double> x, std::span<const double> y)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
-}
 
 /// An approximation of the smallest eigenvalue of A w = lambda M w: the largest of A^{-1} M by Lanczos'
 /// method in the inner product of M. Without orthogonalisation: lost orthogonality repeats eigenvalues and
@@ -38,7 +31,7 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
   std::vector<double> w(n);
   std::vector<double> diagonal;
   std::vector<double> off_diagonal;  // entry i couples i and i + 1, the last one is for the next step
-  double beta = std::sqrt(dot(v, mv));
+  double beta = std::sqrt(inner_product(v, mv));
   double largest = 0;
   for (int k = 0; k < max_steps; ++k)
   {
@@ -48,7 +41,7 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
       mv[i] /= beta;
     }
     cholesky.solve(mv, w);
-    diagonal.push_back(dot(w, mv));
+    diagonal.push_back(inner_product(w, mv));
     for (std::size_t i = 0; i < n; ++i) w[i] -= diagonal.back() * v[i] + (k > 0 ? beta : 0) * previous[i];
 
     const double before = largest;
@@ -59,7 +52,7 @@ double smallest_eigenvalue(const algebra::SparseMatrix& a, const algebra::Sparse
     std::swap(previous, v);
     std::swap(v, w);
     mv = m.multiply(v);
-    beta = std::sqrt(std::max(0.0, dot(v, mv)));
+    beta = std::sqrt(std::max(0.0, inner_product(v, mv)));
     if (beta <= accuracy * largest) break;  // v spans an invariant subspace
     off_diagonal.push_back(beta);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tribound/algebra/petsc.h"
+#include "tribound/base/norm.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -13,13 +14,6 @@ namespace tribound::certify
 
 namespace
 {
-
-double dot(std::span<const double> x, std::span<const double> y)
-{
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
-}
 
 /// x with A x = b up to `tolerance` times the norm of b, by conjugate gradients from the given x. Residuals
 /// are measured with the diagonal of A.
@@ -34,17 +28,17 @@ std::vector<double> conjugate_gradients(const algebra::SparseMatrix& a, std::spa
   std::vector<double> p(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - r[i];
   for (std::size_t i = 0; i < n; ++i) z[i] = b[i] / diagonal[i];
-  const double enough = tolerance * tolerance * dot(b, z);
+  const double enough = tolerance * tolerance * inner_product(b, z);
   double rz = 0;
   for (int step = 0; step < max_steps; ++step)
   {
     for (std::size_t i = 0; i < n; ++i) z[i] = r[i] / diagonal[i];
     const double before = rz;
-    rz = dot(r, z);
+    rz = inner_product(r, z);
     if (!(rz > enough)) break;
     for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + (step > 0 ? rz / before : 0) * p[i];
     const std::vector<double> ap = a.multiply(p);
-    const double length = rz / dot(p, ap);
+    const double length = rz / inner_product(p, ap);
     for (std::size_t i = 0; i < n; ++i)
     {
       x[i] += length * p[i];
