@@ -199,7 +199,7 @@ void Condensation::set_load(std::span<const double> b)
         std::vector<double> u(c.begin(), c.begin() + n_layer);
         const PetscBLASInt columns = 1;
         PetscBLASInt info = 0;
-        LAPACKpotrs_("L", &n_layer, &columns, schur.entries(), &n, u.data(), &n_layer, &info);
+        LAPACKpotrs_("L", &n_layer, &columns, schur.entries(), &n, u.data(), &n, &info);
         return u;
       });
   load_ = by_first(
@@ -264,13 +264,13 @@ void Condensation::put(std::span<const double> layer_and_trace, std::span<double
     if (position_[i] >= 0) u[i] = layer_and_trace[position_[i]];
 }
 
-std::vector<double> Condensation::expand(std::span<const double> x) const
+std::vector<double> Condensation::expand(std::span<const double> layer_and_trace,
+                                         std::span<const double> b) const
 {
-  const std::vector<double> kept = near(x);
-  std::vector<double> b = b_;
-  for (const Entry& entry : coupling_) b[entry.row] -= entry.value * kept[entry.column];
-  std::vector<double> u = solve_rest(b);
-  put(kept, u);
+  std::vector<double> forces(b.begin(), b.end());
+  for (const Entry& entry : coupling_) forces[entry.row] -= entry.value * layer_and_trace[entry.column];
+  std::vector<double> u = solve_rest(forces);
+  put(layer_and_trace, u);
   return u;
 }
 

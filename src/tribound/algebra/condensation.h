@@ -30,8 +30,8 @@ class Condensation
 {
  public:
   /// `k`: the rows of K of own unknowns. `layer` and `trace` are disjoint lists of own unknowns; over all
-  /// ranks neither is empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when K
-  /// with the trace held is not positive definite.
+  /// ranks the trace is not empty. `dim` is that of the mesh and selects the ordering. Throws SolveError when
+  /// K with the trace held is not positive definite.
   Condensation(int dim, SparseRows k, std::vector<Index> layer, std::vector<Index> trace,
                std::span<const double> b, Sharing sharing = {});
 
@@ -45,7 +45,10 @@ class Condensation
   /// Sets u at the unknowns of this rank on layer and trace, ghosts included.
   void put(std::span<const double> layer_and_trace, std::span<double> u) const;
   /// u everywhere but at ghosts: a solve with the sparse factors.
-  [[nodiscard]] std::vector<double> expand(std::span<const double> x) const;
+  [[nodiscard]] std::vector<double> expand(std::span<const double> x) const { return expand(near(x), b_); }
+  /// The same with another b for given values on layer and trace.
+  [[nodiscard]] std::vector<double> expand(std::span<const double> layer_and_trace,
+                                           std::span<const double> b) const;
 
   /// Replaces b.
   void set_load(std::span<const double> b);

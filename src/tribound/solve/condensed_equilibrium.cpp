@@ -39,10 +39,6 @@ CondensedDofs condensed_dofs(const contact::NitscheForm<dim>& form)
   return dofs;
 }
 
-namespace
-{
-
-/// The diagonal of a matrix, at own unknowns.
 template <int dim>
 std::vector<double> diagonal(const algebra::SparseRows& matrix, const fem::LagrangeSpace<dim>& space)
 {
@@ -55,6 +51,9 @@ std::vector<double> diagonal(const algebra::SparseRows& matrix, const fem::Lagra
     }
   return result;
 }
+
+namespace
+{
 
 /// The unknowns x are the displacement on the contact boundary; every rank has those of all ranks.
 template <int dim>
@@ -149,6 +148,8 @@ std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheFo
                                                      std::move(dofs));
 }
 
+template std::vector<double> diagonal(const algebra::SparseRows&, const fem::LagrangeSpace<2>&);
+template std::vector<double> diagonal(const algebra::SparseRows&, const fem::LagrangeSpace<3>&);
 template CondensedDofs condensed_dofs(const contact::NitscheForm<2>&);
 template CondensedDofs condensed_dofs(const contact::NitscheForm<3>&);
 template std::unique_ptr<Equilibrium<2>> condensed_equilibrium(const contact::NitscheForm<2>&,

@@ -65,6 +65,10 @@ class Equilibrium
   [[nodiscard]] virtual double force_scale() const = 0;
 };
 
+/// The diagonal of a matrix with the rows of own unknowns; 0 at ghosts.
+template <int dim>
+[[nodiscard]] std::vector<double> diagonal(const algebra::SparseRows& matrix,
+                                           const fem::LagrangeSpace<dim>& space);
 /// 10 eps D u: round-off in K u, with the diagonal D of K; entries of the same unknowns.
 [[nodiscard]] std::vector<double> round_off(std::span<const double> diagonal, std::span<const double> u);
 

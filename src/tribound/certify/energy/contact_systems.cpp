@@ -1,5 +1,6 @@
 #include "tribound/certify/energy/contact_systems.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tribound/base/error.h"
@@ -27,7 +28,6 @@ void ContactSystems<dim>::set_springs(algebra::Triplets springs)
   systems_[static_cast<int>(OnContact::springs)].reset();
 }
 
-/// Keeps Gamma_C and one more unknown: there must be a layer, and these systems need none.
 template <int dim>
 void ContactSystems<dim>::condense()
 {
@@ -36,11 +36,11 @@ void ContactSystems<dim>::condense()
   const Ranks& ranks = form_.space().mesh().ranks();
   try
   {
-    const std::vector<double> none(form_.space().n_dofs(), 0.0);
-    if (!dofs.layer.empty()) dofs.layer.resize(1);
+    const std::vector<double> no_load(form_.space().n_dofs(), 0.0);
+    algebra::SparseRows k = contact::stiffness(form_.problem(), form_.space(), form_.constraints());
+    diagonal_ = solve::diagonal(k, form_.space());
     condensed_ = std::make_unique<algebra::Condensation>(
-        dim, contact::stiffness(form_.problem(), form_.space(), form_.constraints()), std::move(dofs.layer),
-        std::move(dofs.trace), none, form_.space().numbers());
+        dim, std::move(k), std::vector<Index>{}, std::move(dofs.trace), no_load, form_.space().numbers());
   }
   catch (const SolveError& error)  // one system after another may still be possible
   {
@@ -105,14 +105,17 @@ std::optional<std::vector<double>> ContactSystems<dim>::solve_condensed(OnContac
       for (std::size_t e = 0; e < springs_.rows.size(); ++e)
         r[springs_.rows[e]] += springs_.values[e] * u[springs_.cols[e]];
     for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed[i] != 0 ? 0 : b[i] - r[i];
-    if (attempt > 0 && space.norm(r) <= tolerance * scale) return u;
+    const double round_off = space.norm(solve::round_off(diagonal_, u));
+    if (attempt > 0 && space.norm(r) <= std::max(tolerance * scale, round_off)) return u;
     if (attempt == most_attempts) return std::nullopt;
-    condensed_->set_load(r);
-    const std::vector<double> x =
-        how == OnContact::held ? std::vector<double>(condensed_->n_trace(), 0.0)
-                               : condensed_->solve(how == OnContact::springs ? springs_ : algebra::Triplets{},
-                                                   condensed_->load(), 0);
-    const std::vector<double> change = condensed_->expand(x);
+    std::vector<double> x(condensed_->n_trace(), 0.0);
+    if (how != OnContact::held)
+    {
+      condensed_->set_load(r);
+      x = condensed_->solve(how == OnContact::springs ? springs_ : algebra::Triplets{}, condensed_->load(),
+                            0);
+    }
+    const std::vector<double> change = condensed_->expand(x, r);
     for (std::size_t i = 0; i < u.size(); ++i)
       if (fixed[i] == 0) u[i] += change[i];
     space.update(std::span(u));

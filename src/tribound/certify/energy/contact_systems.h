@@ -44,7 +44,7 @@ class ContactSystems
   void condense();
   [[nodiscard]] std::vector<char> fixed(OnContact how) const;
   [[nodiscard]] const ElasticSystem<dim>& system(OnContact how);
-  /// Nothing if rounding is larger than the tolerance.
+  /// Up to rounding; nothing if the residual does not fall that far.
   [[nodiscard]] std::optional<std::vector<double>> solve_condensed(OnContact how, std::span<const double> b,
                                                                    std::span<const double> start,
                                                                    double tolerance);
@@ -54,6 +54,7 @@ class ContactSystems
   bool may_condense_;
   algebra::Triplets springs_;
   std::unique_ptr<algebra::Condensation> condensed_;
+  std::vector<double> diagonal_;  ///< of the stiffness, if condensed
   std::array<std::unique_ptr<ElasticSystem<dim>>, 3> systems_;
 };
 
