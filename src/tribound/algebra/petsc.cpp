@@ -194,12 +194,14 @@ std::filesystem::path make_directory()
 }
 
 /// If alone, Open MPI puts its files into `directory`: in the common one a starting process may fail because
-/// an ending one removes it. It also starts no daemon, which takes longer than MPI itself and would only
-/// serve further processes. Child processes inherit neither setting.
+/// an ending one removes it. It also starts no daemon and looks for no network, which takes longer than MPI
+/// itself and would only serve further processes. Child processes inherit none of these settings.
 bool start_mpi(bool alone, const std::filesystem::path& directory)
 {
   const Variable files("OMPI_MCA_orte_tmpdir_base", directory.string());
   const Variable no_daemon("OMPI_MCA_ess_singleton_isolated", alone ? "1" : "");
+  const Variable no_network("OMPI_MCA_pml", alone ? "ob1" : "");
+  const Variable to_itself("OMPI_MCA_btl", alone ? "self" : "");
   int provided = 0;
   return MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided) == MPI_SUCCESS;
 }
