@@ -48,16 +48,6 @@ std::vector<double> conjugate_gradients(const algebra::SparseMatrix& a, std::spa
   return x;
 }
 
-/// The vertices of the facet opposite to a vertex of a cell.
-template <int dim>
-std::array<Index, dim> vertices_of_facet(const mesh::Mesh<dim>& mesh, Index cell, int local)
-{
-  std::array<Index, dim> result;
-  for (int i = 0, n = 0; i <= dim; ++i)
-    if (i != local) result[n++] = mesh.cell(cell)[i];
-  return result;
-}
-
 /// A_ij = (grad lambda_i, grad lambda_j) + sum_{F in C} (|F|/h_F) mean_F(lambda_i) mean_F(lambda_j), b_i =
 /// (1, lambda_i), for the vertices off the fixed facets.
 template <int dim>
@@ -69,7 +59,7 @@ struct VertexSystem
     const auto& cell_facets = mesh.topology().cell_facets;
     for (const mesh::BoundaryFacet& facet : mesh.boundary())
       if (fixed[cell_facets[facet.cell][facet.local]])
-        for (const Index v : vertices_of_facet(mesh, facet.cell, facet.local)) number[v] = -1;
+        for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local)) number[v] = -1;
     Index n = 0;
     for (Index& i : number)
       if (i == 0) i = n++;
@@ -103,7 +93,7 @@ struct VertexSystem
   void add_contact(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet)
   {
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const auto vertices = vertices_of_facet(mesh, facet.cell, facet.local);
+    const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     for (const Index v : vertices)
       for (const Index w : vertices) add(v, w, geometry.measure / geometry.diameter / (dim * dim));
   }
@@ -132,7 +122,7 @@ std::vector<double> potential_means(const problem::Problem<dim>& problem, const 
         if (const Index f = pencil.number[mesh.topology().cell_facets[c][i]]; f >= 0)
         {
           start[f] = 0;
-          for (const Index v : vertices_of_facet(mesh, c, i))
+          for (const Index v : mesh::facet_vertices(mesh.cell(c), i))
             if (coarse.number[v] >= 0) start[f] += phi[coarse.number[v]] / dim;
         }
   }
