@@ -192,6 +192,30 @@ TEST(EnergyRandom, NoBoundFails)
       });
 }
 
+/// Steps and kinks of loads inside cells: what is far from polynomials dominates the bound.
+TEST(EnergyRandom, NoBoundFailsIfLoadsAreNoPolynomials)
+{
+  expect_no_failure<3>(
+      "steps and kinks", 200,
+      [](unsigned seed)
+      {
+        RandomBlock random{std::mt19937(seed)};
+        const auto load = [&](const char* text, double size) {
+          return formula(
+              fmt::format(fmt::runtime(text), random.between(-size, size), random.between(0.1, 0.9)));
+        };
+        ProblemData<3> data = pressed_block<3>(frictionless);
+        data.body_force = components<3>(load("{}*(x > {})", 0.3), load("{}*max(0, y - {})", 0.5),
+                                        load("{}*(x > 2*{})", 0.1));
+        for (problem::BoundaryCondition<3>& boundary : data.boundaries)
+          if (boundary.name == "top") boundary.traction[1] = load("{}*(x > {}) - 0.05", 0.1);
+        data.material = problem::lame(1, random.between(-0.3, 0.45));
+        return DiscreteProblem<3>(irregular<3>(block<3>({2, 1, 1}), seed), data,
+                                  {.degree = seed % 5 == 0 ? 2 : 1, .newton = {.tolerance = 1e-11}});
+      },
+      1);
+}
+
 TEST(EnergyReasons, AreGiven)
 {
   const auto reason = [](const ProblemData<2>& data)

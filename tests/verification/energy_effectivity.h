@@ -111,7 +111,7 @@ certify::EnergyBound expect_effectivity(const char* name, const ProblemData<dim>
 
 /// No bound fails in `n` random problems make(seed).
 template <int dim, class Make>
-void expect_no_failure(const char* name, unsigned n, const Make& make)
+void expect_no_failure(const char* name, unsigned n, const Make& make, int refinements = 2)
 {
   double smallest = HUGE_VAL;
   double largest = 0;
@@ -119,7 +119,7 @@ void expect_no_failure(const char* name, unsigned n, const Make& make)
   {
     const DiscreteProblem<dim> c = make(seed);
     const std::vector<double> u = c.solve().u;
-    const RicherReference<dim> reference(c, {.refinements = 2, .degree = c.space.degree() + 2});
+    const RicherReference<dim> reference(c, {.refinements = refinements, .degree = c.space.degree() + 2});
     const double found = effectivity<dim>(reference, u, energy_bound(c, u));
     EXPECT_GE(found, 1) << seed;
     smallest = std::min(smallest, found);

@@ -50,11 +50,10 @@ TEST(IntervalComparison, WhatMayDifferIsNoContradiction)
   const EnergyBound coulomb{.target = EnergyTarget::computed_friction};
   const EnergyBound with_gap{.gap_remainder = 1e-9};
   const EnergyBound with_threshold{.threshold_remainder = 1e-9};
-  const EnergyBound with_loads{.loads_remainder = 1e-9};
   expect_compared(plain, plain, true, true);
   expect_compared(coulomb, plain, false, false);
   expect_compared(plain, coulomb, false, false);
-  for (const EnergyBound& bound : {with_gap, with_threshold, with_loads})
+  for (const EnergyBound& bound : {with_gap, with_threshold})
   {
     expect_compared(bound, plain, true, false);
     expect_compared(plain, bound, true, false);
@@ -63,8 +62,7 @@ TEST(IntervalComparison, WhatMayDifferIsNoContradiction)
 
 TEST(IntervalComparison, WhatIsExactIsComparedAlways)
 {
-  const EnergyBound other{
-      .target = EnergyTarget::computed_friction, .gap_remainder = 1, .loads_remainder = 1};
+  const EnergyBound other{.target = EnergyTarget::computed_friction, .gap_remainder = 1};
   QuantityInterval one = low;
   QuantityInterval another = high;
   one.exact = another.exact = true;

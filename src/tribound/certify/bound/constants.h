@@ -1,9 +1,10 @@
 #pragma once
 
 /// @file constants.h
-/// The constants of the inequalities on a simplex T of diameter h_T on which the bound rests, method section
-/// 5.
+/// The constants of the inequalities on a simplex T of diameter h_T on which the bounds rest, method sections
+/// 5 and 13.4.
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -39,5 +40,32 @@ template <int dim>
 {
   return h * std::sqrt(measure / volume * trace_constant_squared<dim>());
 }
+
+/// ||w - r||_T <= cell ||eps(w)||_T and ||w - r||_F <= facets[i] ||eps(w)||_T on the facet F opposite to
+/// vertex i, r the nearest rigid motion each time, on Hill's simplex with the vertices 0, v_1, v_1 + v_2,
+/// ..., |v_i| = 1 and v_i . v_j = gram for all i != j. With the rigid motion nearest on T, ||w - r|| has the
+/// constant `trace` on any facet and `boundary` on all of them together, from which the others follow.
+/// `scripts/constants` reads all of them from here and proves them.
+template <int dim>
+struct KornConstants
+{
+  double gram;
+  double cell;
+  std::array<double, dim + 1> facets;
+  double trace;
+  double boundary;
+};
+
+inline constexpr KornConstants<2> right_triangle{
+    .gram = 0, .cell = 0.625, .facets = {1.999, 2.474, 1.999}, .trace = 2.592, .boundary = 3.588};
+inline constexpr KornConstants<2> equilateral_triangle{
+    .gram = -0.5, .cell = 0.387, .facets = {1.573, 1.573, 1.573}, .trace = 1.612, .boundary = 2.199};
+inline constexpr KornConstants<3> path_tetrahedron{
+    .gram = 0, .cell = 0.858, .facets = {4.449, 4.735, 4.735, 4.449}, .trace = 4.959, .boundary = 8.071};
+inline constexpr KornConstants<3> disphenoid{.gram = -1.0 / 3,
+                                             .cell = 0.505,
+                                             .facets = {2.431, 2.431, 2.431, 2.431},
+                                             .trace = 2.475,
+                                             .boundary = 4.171};
 
 }  // namespace tribound::certify

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/energy/edge_moments.h"
 #include "tribound/certify/energy/free_motions.h"
+#include "tribound/certify/energy/load_oscillation.h"
 #include "tribound/certify/energy/quantity_bounds.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/residual.h"
@@ -50,38 +50,6 @@ std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::s
   return forces;
 }
 
-/// K_T with ||grad w|| <= K_T ||eps(w)|| on a triangle for w without mean rotation [HP83, CD15].
-double korn_constant(const mesh::Mesh<2>& mesh, Index cell)
-{
-  const auto points = mesh::points_of(mesh.vertices(), mesh.cell(cell));
-  double smallest = std::numbers::pi;
-  for (int i = 0; i < 3; ++i)
-  {
-    const Point<2> a = points[(i + 1) % 3] - points[i];
-    const Point<2> b = points[(i + 2) % 3] - points[i];
-    smallest = std::min(smallest, std::acos(std::clamp(a.dot(b) / (a.norm() * b.norm()), -1.0, 1.0)));
-  }
-  return std::numbers::sqrt2 / std::sin(smallest / 4);
-}
-
-/// O_T of the cells; 0 in 3D, where no constant is known.
-template <int dim>
-std::vector<double> oscillation(const contact::NitscheForm<dim>& form, const DataTerms& data)
-{
-  std::vector<double> result(data.osc.size(), 0.0);
-  if constexpr (dim == 2)
-    for (std::size_t k = 0; k < result.size(); ++k)
-    {
-      const auto cell = static_cast<Index>(k);
-      const double of_data = data.osc[k] + data.neu[k];
-      if (of_data == 0) continue;
-      const problem::Material& m = form.problem().material(form.space().mesh().region(cell));
-      result[k] = korn_constant(form.space().mesh(), cell) /
-                  std::sqrt(std::min(2 * m.mu, 2 * m.mu + 2 * m.lambda)) * of_data;
-    }
-  return result;
-}
-
 }  // namespace
 
 template <int dim>
@@ -112,8 +80,8 @@ struct EnergyEstimator<dim>::Parts
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
-        data(data_terms(form)),
-        oscillation(certify::oscillation(form, data))
+        missed(data_terms(form).missed),
+        oscillation(load_oscillation(form))
   {
   }
 
@@ -132,7 +100,7 @@ struct EnergyEstimator<dim>::Parts
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
-  DataTerms data;
+  double missed;                    ///< of the loads, by quadrature
   std::vector<double> oscillation;  ///< O_T
 };
 
@@ -147,7 +115,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!reason_.empty()) return;
   parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
-  if (parts_->data.missed > 0) reason_ = "quadrature may miss a part of the loads";
+  if (parts_->missed > 0) reason_ = "quadrature may miss a part of the loads";
   if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
@@ -169,9 +137,8 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
                                   [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
   EnergyBound result;
   result.cells = cells.square;
-  // ||tau - sigma(v)||^2, A^2, ||O||^2, ||c||^2, dist^2, G_c, squares of the data in 3D and of sigma_h
-  std::array<double, 8> sums{};
-  auto& [square, a_square, o_square, c_square, dist_square, g, data_square, stress_square] = sums;
+  std::array<double, 6> sums{};  // ||tau - sigma(v)||^2, A^2, ||O||^2, ||c||^2, dist^2, G_c
+  auto& [square, a_square, o_square, c_square, dist_square, g] = sums;
   for (std::size_t k = 0; k < cells.square.size(); ++k)
   {
     const double o = parts.oscillation[k];
@@ -180,7 +147,6 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
     o_square += o * o;
     c_square += cells.correction[k];
     dist_square += cells.to_discrete[k];
-    if (dim == 3) data_square += std::pow(parts.data.osc[k] + parts.data.neu[k], 2);
   }
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
@@ -188,11 +154,8 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
     g += gap;
     result.cells[form.segments()[k].slave.facet.cell] += 4 * gap;
   }
-  for (const double coefficient : stress.dis) stress_square += coefficient * coefficient;
   const Ranks& ranks = form.space().mesh().ranks();
   ranks.sum(std::span(sums));
-  constexpr double rounding = 1e-10;  // of the stress, for loads that are polynomials
-  if (std::sqrt(data_square) <= rounding * std::sqrt(stress_square)) data_square = 0;
   result.cell_balance = ranks.max(cells.unbalanced);
   if (!(result.cell_balance <= cell_balance_limit)) result.reason = "a cell does not balance";
   const double a = std::sqrt(a_square);
@@ -200,7 +163,6 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   result.oscillation = std::sqrt(o_square);
   result.correction = std::sqrt(c_square);
   result.dist = std::sqrt(dist_square);
-  result.loads_remainder = std::sqrt(data_square);
   result.b_v = a / 2 + std::sqrt(a_square / 4 + g);
   result.gap = square / 2 + g + result.oscillation * result.b_v;
   result.mid = std::sqrt(square / 4 + g + result.oscillation * result.b_v);

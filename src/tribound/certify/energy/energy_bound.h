@@ -35,15 +35,13 @@ struct EnergyBound
   double b_v = 0;                  ///< bounds ||u - v||_en
   double mid = 0;                  ///< bounds the distance of sigma(u) from (tau + sigma(v))/2
   double dist = 0;                 ///< the distance of sigma(u_h) from the same
-  double gap = 0;                  ///< E, the duality gap of v and tau, in 2D plus ||O|| B_v
+  double gap = 0;                  ///< E, the duality gap of v and tau, plus ||O|| B_v
   double correction = 0;           ///< ||u_h - v||_en
   double contact = 0;              ///< G_c
   double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials
   double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance
   double gap_remainder = 0;        ///< largest |g - g_h| at the contact points; length
   double threshold_remainder = 0;  ///< largest |s - s_h| there; stress
-  double loads_remainder =
-      0;  ///< 3D: ||f - Pi f|| and ||g_N - Pi g_N||, weighted; the bound is for the projected loads
   bool is_open = true;  ///< whether v with facets in transition taken as open and slipping is the better one
   /// Per own cell ||tau - sigma(v)||^2 + 4 G_F of its facets, for marking.
   std::vector<double> cells{};

@@ -9,7 +9,7 @@ namespace
 /// Whether v and tau are admissible for the given data themselves.
 bool has_all_data(const EnergyBound& bound)
 {
-  return bound.gap_remainder == 0 && bound.threshold_remainder == 0 && bound.loads_remainder == 0;
+  return bound.gap_remainder == 0 && bound.threshold_remainder == 0;
 }
 
 }  // namespace

@@ -41,10 +41,9 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       bound(energy),
       forces(of.load().begin(), of.load().end()),
       junctions(on.junctions()),
-      is_projected(energy.loads_remainder > 0),
       unresolved(0)
 {
-  if (dim == 2 && largest_degree(form.problem()) > form.space().degree() + 2) unresolved = bound.oscillation;
+  if (largest_degree(form.problem()) > form.space().degree() + 2) unresolved = bound.oscillation;
   form.add_contact_load(t_h.at_points, forces);
 }
 

@@ -25,8 +25,6 @@ struct BoundedState
   const EnergyBound& bound;
   std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C
   std::vector<char> junctions;  ///< of the facets
-  /// Whether the solution is that for other loads, the projected ones.
-  bool is_projected;
   /// |L(z) - its value by quadrature| <= unresolved ||z||_en.
   double unresolved;
 
@@ -37,7 +35,7 @@ struct BoundedState
   /// L(z) + (t_h, z)_C - (tau, eps(z)): the effect of data that are not polynomials, and rounding.
   [[nodiscard]] double remainder(std::span<const double> z, double work) const
   {
-    return is_projected ? 0 : form.space().dot(forces, z) - work;
+    return form.space().dot(forces, z) - work;
   }
   /// Half the width of an interval, distributed over the cells in proportion to the energy.
   [[nodiscard]] std::vector<double> shares(double half_width) const;

@@ -189,8 +189,7 @@ QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumb
 {
   if (number.known) return known_interval(*number.known);
   const bool is_work = item.kind() == QuantityKind::load_work;
-  if (is_work && (state.is_projected || state.unresolved > 0))
-    return {.reason = "the loads are no polynomials of low degree"};
+  if (is_work && state.unresolved > 0) return {.reason = "the loads are no polynomials of low degree"};
   const LinearInterval of_number = intervals(number, number.base(state, item.parts));
   if (!of_number.reason.empty()) return {.reason = of_number.reason};
   const double of_loads = is_work ? state.bound.oscillation * state.bound.b_v : 0;

@@ -28,9 +28,6 @@ std::string words_of_remainders(const certify::EnergyBound& bound, const CaseFac
   if (bound.threshold_remainder > 0)
     text += fmt::format("; thresholds are interpolated, they differ by {:.3g}{} where they were compared",
                         bound.threshold_remainder, facts.behind(problem::UnitOf::stress));
-  if (bound.loads_remainder > 0)
-    text += fmt::format("; loads are projected, what is left has the weighted norm {:.3g}",
-                        bound.loads_remainder);
   return text;
 }
 
@@ -159,8 +156,7 @@ void add_energy_error(Json& object, const LevelRecord& level)
       {"oscillation", bound.oscillation},
       {"cell_balance", bound.cell_balance},
       {"gap_remainder", bound.gap_remainder},
-      {"threshold_remainder", bound.threshold_remainder},
-      {"loads_remainder", bound.loads_remainder}};
+      {"threshold_remainder", bound.threshold_remainder}};
 }
 
 }  // namespace tribound::io
