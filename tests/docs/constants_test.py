@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Tests the proof of the Poincare-Korn constants (scripts/constants): of triangles it is repeated.
 
     constants_test.py ROOT
