@@ -40,9 +40,9 @@ std::array<double, dim + 1> squared_gradients(const Tensor<dim>& inverse)
 
 /// A simplex on which constants are known, as the path of its edges v_1, v_2, ...
 template <int dim>
-struct Reference
+struct HillSimplex
 {
-  explicit Reference(const KornConstants<dim>& known) : constants(known)
+  explicit HillSimplex(const KornConstants<dim>& known) : constants(known)
   {
     Tensor<dim> gram = Tensor<dim>::Constant(known.gram);
     gram.diagonal().setOnes();
@@ -59,7 +59,7 @@ struct Reference
 /// reference simplex: both constants grow by |F|^2 |F^{-1}|, those of facets also by the square root of the
 /// ratio of |F_i| / |T|.
 template <int dim>
-void improve(PoincareKorn<dim>& best, const Reference<dim>& reference, const Tensor<dim>& edges,
+void improve(PoincareKorn<dim>& best, const HillSimplex<dim>& reference, const Tensor<dim>& edges,
              const std::array<int, dim + 1>& order)
 {
   const Tensor<dim> inverse = edges.inverse();
@@ -99,18 +99,18 @@ PoincareKorn<2> by_angles(const std::array<Point<2>, 3>& vertices)
 }
 
 template <int dim>
-const std::array<Reference<dim>, 2>& references()
+const std::array<HillSimplex<dim>, 2>& hill_simplices()
 {
   if constexpr (dim == 2)
   {
-    static const std::array<Reference<2>, 2> triangles{Reference<2>(right_triangle),
-                                                       Reference<2>(equilateral_triangle)};
+    static const std::array<HillSimplex<2>, 2> triangles{HillSimplex<2>(right_triangle),
+                                                         HillSimplex<2>(equilateral_triangle)};
     return triangles;
   }
   else
   {
-    static const std::array<Reference<3>, 2> tetrahedra{Reference<3>(path_tetrahedron),
-                                                        Reference<3>(disphenoid)};
+    static const std::array<HillSimplex<3>, 2> tetrahedra{HillSimplex<3>(path_tetrahedron),
+                                                          HillSimplex<3>(disphenoid)};
     return tetrahedra;
   }
 }
@@ -130,7 +130,8 @@ PoincareKorn<dim> poincare_korn(const std::array<Point<dim>, dim + 1>& vertices)
     if (order[0] > order[dim]) continue;  // a path and its reverse are congruent on Hill's simplices
     Tensor<dim> edges;
     for (int i = 0; i < dim; ++i) edges.col(i) = vertices[order[i + 1]] - vertices[order[i]];
-    for (const Reference<dim>& reference : references<dim>()) improve<dim>(best, reference, edges, order);
+    for (const HillSimplex<dim>& reference : hill_simplices<dim>())
+      improve<dim>(best, reference, edges, order);
   } while (std::ranges::next_permutation(order).found);
   return best;
 }
