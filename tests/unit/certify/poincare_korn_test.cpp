@@ -73,7 +73,7 @@ class BernsteinFields
         products_[i][j] = derivative(i).transpose() * averages(below_, degree - 1) * derivative(j);
   }
 
-  /// sup ||w - r||^2 / ||eps(w)||^2 over the cell (facet < 0) or a facet, from below.
+  /// sup ||w - r||^2 / ||eps(w)||^2 of the cell, then of each facet, from below.
   [[nodiscard]] std::vector<double> quotients(const Vertices<dim>& x, int n_steps) const
   {
     Tensor<dim> jacobian;

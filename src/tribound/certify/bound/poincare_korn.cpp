@@ -88,9 +88,7 @@ PoincareKorn<2> by_angles(const std::array<Point<2>, 3>& vertices)
   }
   const double korn = std::numbers::sqrt2 / std::sin(smallest / 4);
   const double h = mesh::diameter(vertices);
-  const Point<2> a = vertices[1] - vertices[0];
-  const Point<2> b = vertices[2] - vertices[0];
-  const double area = std::abs(a[0] * b[1] - a[1] * b[0]) / 2;
+  const double area = std::abs(mesh::determinant<2>(vertices)) / 2;
   PoincareKorn<2> result{.cell = korn * poincare_constant_of_triangle(h), .facets = {}};
   for (int i = 0; i < 3; ++i)
     result.facets[i] =

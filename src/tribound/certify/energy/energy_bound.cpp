@@ -20,7 +20,7 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/degree.h"
-#include "tribound/mesh/geometry.h"
+#include "tribound/mesh/mesh.h"
 
 namespace tribound::certify
 {
