@@ -75,22 +75,24 @@ certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index>
 template <int dim>
 certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, const Method& method,
                                      std::span<const double> u,
-                                     const std::vector<problem::Quantity<dim>>& quantities, bool is_cut)
+                                     const std::vector<problem::Quantity<dim>>& quantities,
+                                     std::optional<double> korn, bool is_cut)
 {
   const Ranks& ranks = form.space().mesh().ranks();
-  const auto on_this_mesh = [&] { return certify::EnergyEstimator<dim>(form, method.solver, quantities)(u); };
+  const auto on_this_mesh = [&]
+  { return certify::EnergyEstimator<dim>(form, method.solver, quantities, korn)(u); };
   const auto where_it_is_finer = [&]() -> certify::EnergyBound
   {
     const auto finer = finer_contact<dim>(form, u);
     if (!finer) return {.reason = "the state changes nowhere"};
-    return added_up(certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities)(finer->u),
+    return added_up(certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities, korn)(finer->u),
                     finer->parent, form.space().mesh().n_owned_cells());
   };
   const auto where_it_matches = [&]
   {
     const auto matching = matching_contact<dim>(form, u);
     if (!matching) return on_this_mesh();
-    return added_up(bound_or_reason<dim>(*matching->form, method, matching->u, quantities, true),
+    return added_up(bound_or_reason<dim>(*matching->form, method, matching->u, quantities, korn, true),
                     matching->parent, form.space().mesh().n_owned_cells());
   };
   certify::EnergyBound bound = attempt(ranks, where_it_is_finer);
@@ -105,9 +107,10 @@ certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, cons
 template <int dim>
 certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
                                   std::span<const double> u,
-                                  const std::vector<problem::Quantity<dim>>& quantities)
+                                  const std::vector<problem::Quantity<dim>>& quantities,
+                                  std::optional<double> korn)
 {
-  certify::EnergyBound bound = bound_or_reason<dim>(form, method, u, quantities, false);
+  certify::EnergyBound bound = bound_or_reason<dim>(form, method, u, quantities, korn, false);
   if (bound.quantities.size() == quantities.size()) return bound;
   return certify::no_energy_bound<dim>(form, u, quantities, bound.reason);
 }
@@ -164,8 +167,10 @@ std::string unmet(const ErrorBars& bars, const certify::EnergyBound& bound, doub
 }
 
 template certify::EnergyBound energy_bound(const contact::NitscheForm<2>&, const Method&,
-                                           std::span<const double>, const std::vector<problem::Quantity<2>>&);
+                                           std::span<const double>, const std::vector<problem::Quantity<2>>&,
+                                           std::optional<double>);
 template certify::EnergyBound energy_bound(const contact::NitscheForm<3>&, const Method&,
-                                           std::span<const double>, const std::vector<problem::Quantity<3>>&);
+                                           std::span<const double>, const std::vector<problem::Quantity<3>>&,
+                                           std::optional<double>);
 
 }  // namespace tribound::adapt

@@ -34,11 +34,13 @@ struct ErrorBars
 };
 
 /// The bound of the error of u in the energy norm, and the intervals of the quantities. A failure becomes the
-/// reason in the bound: the level remains valid, and so do the values of the quantities.
+/// reason in the bound: the level remains valid, and so do the values of the quantities. `korn`: K of
+/// certify/bound/korn.h, of a mesh of which this is a refinement.
 template <int dim>
 [[nodiscard]] certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const Method& method,
                                                 std::span<const double> u,
-                                                const std::vector<problem::Quantity<dim>>& quantities = {});
+                                                const std::vector<problem::Quantity<dim>>& quantities = {},
+                                                std::optional<double> korn = {});
 
 /// The interval of that name; null where there is none.
 [[nodiscard]] const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound,

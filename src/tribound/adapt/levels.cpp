@@ -261,7 +261,9 @@ certify::EnergyBound Levels<dim>::energy_or_reason()
   if (interrupted()) return without("interrupted");
   const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
   if (level_.converged) level_.equilibrium.reset();  // the factors, for finish(), take most of the memory
-  return energy_bound<dim>(current_->form, method_, level_.u, quantities_);
+  const auto& constants = level_.friedrichs;
+  return energy_bound<dim>(current_->form, method_, level_.u, quantities_,
+                           constants ? std::optional(constants->korn) : std::nullopt);
 }
 
 template <int dim>

@@ -222,6 +222,20 @@ bool Problem<dim>::body_force_is_constant(int region) const
 }
 
 template <int dim>
+int Problem<dim>::load_degree() const
+{
+  int degree = 0;
+  for (const Region<dim>& region : regions_)
+    for (const Field& f : region.body_force) degree = std::max(degree, f.degree());
+  for (const BoundaryCondition<dim>& boundary : boundaries_)
+  {
+    for (const Field& g : boundary.traction) degree = std::max(degree, g.degree());
+    if (boundary.pressure) degree = std::max(degree, boundary.pressure->degree());
+  }
+  return degree;
+}
+
+template <int dim>
 bool Problem<dim>::body_force_is_zero(int region) const
 {
   return std::ranges::all_of(body_force(region), &Field::is_zero);

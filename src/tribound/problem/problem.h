@@ -163,6 +163,8 @@ class Problem
   [[nodiscard]] Point<dim> body_force(int region, const Point<dim>& x) const;
   /// Whether f is the same everywhere in the region.
   [[nodiscard]] bool body_force_is_constant(int region) const;
+  /// The largest degree of the loads in regions and on boundaries, as Field::degree().
+  [[nodiscard]] int load_degree() const;
   /// Whether f vanishes identically in the region.
   [[nodiscard]] bool body_force_is_zero(int region) const;
 

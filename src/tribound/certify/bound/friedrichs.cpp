@@ -12,6 +12,7 @@
 #include "tribound/certify/bound/friedrichs_flux.h"
 #include "tribound/certify/bound/friedrichs_pairs.h"
 #include "tribound/certify/bound/friedrichs_potential.h"
+#include "tribound/certify/bound/korn.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/support/assembly.h"
 #include "tribound/fem/space.h"
@@ -210,11 +211,10 @@ FriedrichsConstant with_factors(const problem::Problem<dim>& problem, const mesh
   return finer.value < here.value ? finer : here;
 }
 
-}  // namespace
-
+/// C_F without K.
 template <int dim>
-FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                       Index most_factorised)
+FriedrichsConstant of_gradients(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                Index most_factorised)
 {
   const FriedrichsConstant none{std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.partition()) return none;
@@ -231,6 +231,17 @@ FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, con
   {
     return bodies == Held::each ? without_factors(problem, mesh) : none;
   }
+}
+
+}  // namespace
+
+template <int dim>
+FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                       Index most_factorised)
+{
+  FriedrichsConstant result = of_gradients(problem, mesh, most_factorised);
+  result.korn = korn_constant(problem, mesh);
+  return result;
 }
 
 template <int dim>

@@ -18,6 +18,8 @@ struct FriedrichsConstant
   double theta;      ///< the smallest over all components
   double mesh_size;  ///< H, the largest h_T of the mesh of the proof; 0 if the proof needs none
   Index cells;       ///< of the mesh of the proof
+  /// K of korn.h where quadrature may miss a part of the loads; else 0.
+  double korn = 0;
 };
 
 /// kappa with ||w - I w||_T <= kappa h_T ||grad(w - I w)||_T, I w the Crouzeix-Raviart interpolant [CGR12].
@@ -37,7 +39,7 @@ inline constexpr Index most_cells_factorised = 20'000;
 /// joined bodies have a component with neither Gamma_D nor C, which check_rigid_motions() refuses as a free
 /// translation, and if no theta could be proved. If the factorisation fails, for example for lack of memory,
 /// the proof without it is used, too. Infinite for a distributed mesh: the constant of the undistributed mesh
-/// is known before.
+/// is known before. So is K.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem,
                                                      const mesh::Mesh<dim>& mesh,

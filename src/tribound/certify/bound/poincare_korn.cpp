@@ -72,6 +72,8 @@ void improve(PoincareKorn<dim>& best, const HillSimplex<dim>& reference, const T
     const double ratio = std::sqrt(gradients[i] / reference.gradients[i]);
     double& facet = best.facets[order[i]];
     facet = std::min(facet, factor * std::sqrt(ratio) * reference.constants.facets[i]);
+    double& trace = best.traces[order[i]];
+    trace = std::min(trace, factor * std::sqrt(ratio) * reference.constants.trace);
   }
 }
 
@@ -89,7 +91,7 @@ PoincareKorn<2> by_angles(const std::array<Point<2>, 3>& vertices)
   const double korn = std::numbers::sqrt2 / std::sin(smallest / 4);
   const double h = mesh::diameter(vertices);
   const double area = std::abs(mesh::determinant<2>(vertices)) / 2;
-  PoincareKorn<2> result{.cell = korn * poincare_constant_of_triangle(h), .facets = {}};
+  PoincareKorn<2> result{.cell = korn * poincare_constant_of_triangle(h), .facets = {}, .traces = {}};
   for (int i = 0; i < 3; ++i)
     result.facets[i] =
         korn * trace_constant<2>(h, (vertices[(i + 1) % 3] - vertices[(i + 2) % 3]).norm(), area);
@@ -118,9 +120,10 @@ const std::array<HillSimplex<dim>, 2>& hill_simplices()
 template <int dim>
 PoincareKorn<dim> poincare_korn(const std::array<Point<dim>, dim + 1>& vertices)
 {
-  PoincareKorn<dim> best{.cell = HUGE_VAL, .facets = {}};
+  PoincareKorn<dim> best{.cell = HUGE_VAL, .facets = {}, .traces = {}};
   best.facets.fill(HUGE_VAL);
   if constexpr (dim == 2) best = by_angles(vertices);
+  best.traces.fill(HUGE_VAL);
   std::array<int, dim + 1> order;
   std::iota(order.begin(), order.end(), 0);
   do

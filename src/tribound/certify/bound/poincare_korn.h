@@ -17,6 +17,7 @@ struct PoincareKorn
 {
   double cell;
   std::array<double, dim + 1> facets;
+  std::array<double, dim + 1> traces;  ///< instead of facets, if r is the rigid motion nearest on T
 };
 
 /// The smallest that follow from those of Hill's simplices (constants.h) mapped onto T in any order of its

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "tribound/certify/bound/checks.h"
-#include "tribound/certify/bound/data_terms.h"
+#include "tribound/certify/bound/korn.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/certify/energy/balanced_solution.h"
@@ -73,15 +73,14 @@ template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
   Parts(const contact::NitscheForm<dim>& given, const algebra::SolverOptions& solver, bool has_quantities,
-        PatchStress patches)
+        double korn, PatchStress patches)
       : form(given.space().degree() >= lowest_degree ? given : richer(given)),
         equilibrator(form, patches),
         systems(form, solver, has_quantities),
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
-        missed(data_terms(form).missed),
-        oscillation(load_oscillation(form))
+        oscillation(load_oscillation(form, korn))
   {
   }
 
@@ -100,22 +99,23 @@ struct EnergyEstimator<dim>::Parts
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
-  double missed;                    ///< of the loads, by quadrature
-  std::vector<double> oscillation;  ///< O_T
+  LoadOscillation oscillation;
 };
 
 template <int dim>
 EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
                                       const algebra::SolverOptions& solver,
                                       const std::vector<problem::Quantity<dim>>& quantities,
-                                      PatchStress patches)
+                                      std::optional<double> korn, PatchStress patches)
     : form_(form), solver_(solver), reason_(why_no_energy_bound(form))
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
-  parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, patches);
+  if (!korn) korn = korn_constant(form.problem(), form.space().mesh());
+  parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
-  if (parts_->missed > 0) reason_ = "quadrature may miss a part of the loads";
+  if (!std::isfinite(parts_->oscillation.missed))
+    reason_ = "quadrature may miss a part of the loads, and contact alone holds a body";
   if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
@@ -141,7 +141,7 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   auto& [square, a_square, o_square, c_square, dist_square, g] = sums;
   for (std::size_t k = 0; k < cells.square.size(); ++k)
   {
-    const double o = parts.oscillation[k];
+    const double o = parts.oscillation.cells[k];
     square += cells.square[k];
     a_square += std::pow(std::sqrt(cells.square[k]) + o, 2);
     o_square += o * o;
@@ -158,12 +158,12 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   ranks.sum(std::span(sums));
   result.cell_balance = ranks.max(cells.unbalanced);
   if (!(result.cell_balance <= cell_balance_limit)) result.reason = "a cell does not balance";
-  const double a = std::sqrt(a_square);
+  const double a = std::sqrt(a_square) + parts.oscillation.missed;
   result.contact = g;
-  result.oscillation = std::sqrt(o_square);
+  result.oscillation = std::sqrt(o_square) + parts.oscillation.missed;
   result.correction = std::sqrt(c_square);
   result.dist = std::sqrt(dist_square);
-  result.b_v = a / 2 + std::sqrt(a_square / 4 + g);
+  result.b_v = a / 2 + std::sqrt(a * a / 4 + g);
   result.gap = square / 2 + g + result.oscillation * result.b_v;
   result.mid = std::sqrt(square / 4 + g + result.oscillation * result.b_v);
   result.bound = std::min(result.b_v + result.correction, result.mid + result.dist);

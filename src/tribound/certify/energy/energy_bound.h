@@ -4,6 +4,7 @@
 /// The guaranteed bound of the error in the energy norm, method section 13.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,11 +79,12 @@ template <int dim>
 class EnergyEstimator
 {
  public:
-  /// The form must outlive the object. `solver` is for u~, which is solved to 1e-12. The other norm for its
-  /// patches also gives a bound, but a less sharp one near incompressibility. Throws InputError for
-  /// quantities that the problem does not have, and SolveError if their dual problems cannot be solved.
+  /// The form must outlive the object. `solver` is for u~, which is solved to 1e-12. `korn`: K of korn.h, of
+  /// a mesh of which this is a refinement. The other norm for its patches also gives a bound, but a less
+  /// sharp one near incompressibility. Throws InputError for quantities that the problem does not have, and
+  /// SolveError if their dual problems cannot be solved.
   EnergyEstimator(const contact::NitscheForm<dim>& form, const algebra::SolverOptions& solver,
-                  const std::vector<problem::Quantity<dim>>& quantities = {},
+                  const std::vector<problem::Quantity<dim>>& quantities = {}, std::optional<double> korn = {},
                   PatchStress patches = PatchStress::afw_compliance);
   ~EnergyEstimator();
   EnergyEstimator(const EnergyEstimator&) = delete;

@@ -9,26 +9,6 @@
 namespace tribound::certify
 {
 
-namespace
-{
-
-/// The largest degree of the loads.
-template <int dim>
-int largest_degree(const problem::Problem<dim>& problem)
-{
-  int degree = 0;
-  for (const problem::Region<dim>& region : problem.regions())
-    for (const problem::Field& f : region.body_force) degree = std::max(degree, f.degree());
-  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
-  {
-    for (const problem::Field& g : boundary.traction) degree = std::max(degree, g.degree());
-    if (boundary.pressure) degree = std::max(degree, boundary.pressure->degree());
-  }
-  return degree;
-}
-
-}  // namespace
-
 template <int dim>
 BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const ObstacleFacets<dim>& on,
                                 std::span<const double> displacement, const Stress<dim>& equilibrated,
@@ -43,7 +23,7 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       junctions(on.junctions()),
       unresolved(0)
 {
-  if (largest_degree(form.problem()) > form.space().degree() + 2) unresolved = bound.oscillation;
+  if (form.problem().load_degree() > form.space().degree() + 2) unresolved = bound.oscillation;
   form.add_contact_load(t_h.at_points, forces);
 }
 

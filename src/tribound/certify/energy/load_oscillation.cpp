@@ -2,39 +2,61 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tribound/certify/bound/poincare_korn.h"
 
 namespace tribound::certify
 {
 
+/// f - Pi f and g_N - Pi g_N are orthogonal to rigid motions by quadrature. Their projections on them are at
+/// most (d + 1) e_T |T|^{-1/2} and d e_F |F|^{-1/2}, if e bounds what it misses, since affine functions are
+/// at most n + 1 times their root mean square on simplices with n + 1 vertices. That on F is tested with w
+/// less the nearest rigid motion r on T, and with r.
 template <int dim>
-std::vector<double> load_oscillation(const contact::NitscheForm<dim>& form)
+LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double korn)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const contact::DiscreteData<dim>& data = form.data();
-  std::vector<double> result(mesh.n_owned_cells(), 0.0);
+  const Index n_cells = mesh.n_owned_cells();
+  LoadOscillation result{.cells = std::vector<double>(n_cells, 0.0)};
+  std::vector<double> missed(n_cells, 0.0);
   const auto constants = [&](Index cell)
   { return poincare_korn<dim>(mesh::points_of(mesh.vertices(), mesh.cell(cell))); };
-  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
-    if (const double norm = data.body_remainder(c).oscillation; norm > 0)
-      result[c] = constants(c).cell * norm;
+  for (Index c = 0; c < n_cells; ++c)
+  {
+    const auto [oscillation, mean] = data.body_remainder(c);
+    missed[c] = mean;
+    if (oscillation > 0) result.cells[c] = constants(c).cell * oscillation;
+  }
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
-    const double norm = data.traction_remainder(k).oscillation;
+    const auto [oscillation, mean] = data.traction_remainder(k);
+    if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    if (norm > 0) result[facet.cell] += constants(facet.cell).facets[facet.local] * norm;
+    const PoincareKorn<dim> of_cell = constants(facet.cell);
+    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    result.cells[facet.cell] += of_cell.facets[facet.local] * oscillation +
+                                of_cell.traces[facet.local] * dim * mean / std::sqrt(measure);
+    missed[facet.cell] += dim * mean;
   }
-  for (Index c = 0; c < mesh.n_owned_cells(); ++c)
-    if (result[c] > 0)
-    {
-      const problem::Material& material = form.problem().material(mesh.region(c));
-      result[c] /= std::sqrt(std::min(2 * material.mu, 2 * material.mu + dim * material.lambda));
-    }
+  double squares = 0;
+  double least = std::numeric_limits<double>::infinity();  // of the stiffness
+  for (Index c = 0; c < n_cells; ++c)
+  {
+    const problem::Material& material = form.problem().material(mesh.region(c));
+    const double stiffness = std::min(2 * material.mu, 2 * material.mu + dim * material.lambda);
+    least = std::min(least, stiffness);
+    result.cells[c] /= std::sqrt(stiffness);
+    if (missed[c] > 0) squares += missed[c] * missed[c] / mesh::cell_map(mesh, c).measure();
+  }
+  squares = mesh.ranks().sum(squares);
+  least = -mesh.ranks().max(-least);
+  if (squares > 0) result.missed = korn * (dim + 1) * std::sqrt(squares / least);
   return result;
 }
 
-template std::vector<double> load_oscillation(const contact::NitscheForm<2>&);
-template std::vector<double> load_oscillation(const contact::NitscheForm<3>&);
+template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, double);
+template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, double);
 
 }  // namespace tribound::certify

@@ -10,11 +10,16 @@
 namespace tribound::certify
 {
 
-/// O_T of the own cells, (C_V ||f - Pi f||_T + sum_F C_F ||g_N - Pi g_N||_F) / min(2 mu, 2 mu + d
-/// lambda)^{1/2}:
-/// |(f - Pi f, w)_T + sum_F (g_N - Pi g_N, w)_F| <= O_T ||w||_en,T for all w, but for what quadrature misses
-/// of the loads.
+/// |(f - Pi f, w) + (g_N - Pi g_N, w)_N| <= sum_T O_T ||w||_en,T + missed ||w||_en for all w that vanish
+/// where Gamma_D fixes them.
+struct LoadOscillation
+{
+  std::vector<double> cells;  ///< O_T of the own cells
+  double missed = 0;          ///< what quadrature may miss of the loads, of all ranks; infinite if K is
+};
+
+/// `korn` is K of certify/bound/korn.h. All ranks together.
 template <int dim>
-[[nodiscard]] std::vector<double> load_oscillation(const contact::NitscheForm<dim>& form);
+[[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double korn);
 
 }  // namespace tribound::certify

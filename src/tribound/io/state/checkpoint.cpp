@@ -69,7 +69,8 @@ Json state_json(const CheckpointFacts& facts)
   if (start.expected) json["expected"] = *start.expected;
   json["is_likely_last"] = start.is_likely_last;
   if (const auto& c = start.friedrichs; c && std::isfinite(c->theta))  // JSON has no infinity
-    json["friedrichs"] = {std::isfinite(c->value) ? c->value : 0, c->theta, c->mesh_size, c->cells};
+    json["friedrichs"] = {std::isfinite(c->value) ? c->value : 0, c->theta, c->mesh_size, c->cells,
+                          std::isfinite(c->korn) ? c->korn : -1};
   return json;
 }
 
@@ -92,9 +93,11 @@ CheckpointFacts facts_of(const Json& json)
   if (json.contains("friedrichs"))
   {
     const Json& c = json.at("friedrichs");
-    facts.start.friedrichs = {c.at(0), c.at(1), c.at(2), c.at(3)};
+    facts.start.friedrichs = {c.at(0), c.at(1), c.at(2), c.at(3), c.at(4)};
     if (facts.start.friedrichs->theta == 0)
       facts.start.friedrichs->value = std::numeric_limits<double>::infinity();
+    if (facts.start.friedrichs->korn < 0)
+      facts.start.friedrichs->korn = std::numeric_limits<double>::infinity();
   }
   return facts;
 }
