@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -44,7 +45,7 @@ class StepLog : public ::testing::Test
     return rows;
   }
 
-  const fs::path directory = fs::path(::testing::TempDir()) / "step_log";
+  const fs::path directory = fs::path(::testing::TempDir()) / ("step_log_" + std::to_string(::getpid()));
   const fs::path log = directory / io::step_log_name;
   const fs::path checkpoint = directory / "checkpoint.h5";
 };
