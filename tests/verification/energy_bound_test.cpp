@@ -215,8 +215,8 @@ DiscreteProblem<dim> with_formulas(unsigned seed)
 
 TEST(EnergyRandom, NoBoundFailsIfLoadsAreNoPolynomials)
 {
-  expect_no_failure<2>("formulas as loads, 2D", 60, with_formulas<2>);
-  expect_no_failure<3>("formulas as loads, 3D", 80, with_formulas<3>, 1);
+  expect_no_failure<2>("formulas as loads, 2D", 40, with_formulas<2>);
+  expect_no_failure<3>("formulas as loads, 3D", 40, with_formulas<3>, 1);
 }
 
 TEST(EnergyReasons, AreGiven)
