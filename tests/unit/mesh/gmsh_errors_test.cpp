@@ -36,22 +36,6 @@ Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
 )";
 
-/// A binary MSH 4.1 file: a surface bounded by this many curves, which do not exist.
-std::string binary_entities_with(std::uint64_t n_curves)
-{
-  std::string text = "$MeshFormat\n4.1 1 8\n";
-  const auto put = [&text](auto value)
-  { text.append(std::string_view(reinterpret_cast<const char*>(&value), sizeof(value))); };
-  put(int{1});
-  text += "\n$EndMeshFormat\n$Entities\n";
-  for (const std::uint64_t n : {0, 0, 1, 0}) put(n);
-  put(int{1});
-  for (const double x : {0., 0., 0., 1., 1., 0.}) put(x);
-  put(std::uint64_t{0});
-  put(n_curves);
-  return text + "\n$EndEntities\n";
-}
-
 struct BadFile
 {
   std::string name;
@@ -217,6 +201,22 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 #ifndef __SANITIZE_ADDRESS__  // its malloc ends the program where others return null
+/// A binary MSH 4.1 file: a surface bounded by this many curves, which do not exist.
+std::string binary_entities_with(std::uint64_t n_curves)
+{
+  std::string text = "$MeshFormat\n4.1 1 8\n";
+  const auto put = [&text](auto value)
+  { text.append(std::string_view(reinterpret_cast<const char*>(&value), sizeof(value))); };
+  put(int{1});
+  text += "\n$EndMeshFormat\n$Entities\n";
+  for (const std::uint64_t n : {0, 0, 1, 0}) put(n);
+  put(int{1});
+  for (const double x : {0., 0., 0., 1., 1., 0.}) put(x);
+  put(std::uint64_t{0});
+  put(n_curves);
+  return text + "\n$EndEntities\n";
+}
+
 INSTANTIATE_TEST_SUITE_P(
     GmshMemory, BadMesh,
     testing::ValuesIn(std::vector<BadFile>{
