@@ -58,13 +58,13 @@ mesh::MeshData<dim> three_blocks(int finer = 1)
 
 /// Two blocks that touch, on meshes that do not match; names of the lower one end with "_below".
 template <int dim>
-mesh::MeshData<dim> two_blocks()
+mesh::MeshData<dim> two_blocks(int finer = 1)
 {
   std::array<int, dim> cells;
-  cells.fill(dim == 2 ? 2 : 1);
-  cells[0] = 3;
-  cells[dim - 1] = 2;
-  return on_block<dim>(block<dim>({4, 2}, {2, 1, 1}), cells);
+  cells.fill(dim == 2 ? 2 * finer : finer);
+  cells[0] = 3 * finer;
+  cells[dim - 1] = 2 * finer;
+  return on_block<dim>(block<dim>({4 * finer, 2 * finer}, {2 * finer, finer, finer}), cells);
 }
 
 }  // namespace tribound::test

@@ -95,8 +95,7 @@ template <int dim>
 /// Returns the bound.
 template <int dim>
 certify::EnergyBound expect_effectivity(const char* name, const ProblemData<dim>& data,
-                                        mesh::MeshData<dim> mesh, int p, const certify::RicherSpace& richer,
-                                        double largest)
+                                        mesh::MeshData<dim> mesh, int p, const certify::RicherSpace& richer, double largest)
 {
   const DiscreteProblem<dim> c(std::move(mesh), data, {.degree = p, .newton = {.tolerance = 1e-12}});
   const std::vector<double> u = c.solve().u;

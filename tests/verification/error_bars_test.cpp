@@ -243,21 +243,6 @@ TEST(ErrorBars, ALevelWhoseSuccessorFailedHasThem)
   EXPECT_DOUBLE_EQ(levels.view().level.estimate.total_sharp, bound);
 }
 
-/// Facets of one body end just beside those of the other: the flat cells between are not the user's.
-TEST(ErrorBars, CellsCutFlatAreNotBlamedOnTheMesh)
-{
-  const ProblemData<2> data{.boundaries = {clamped<2>("bottom_below"), loaded<2>("top", 0.01, -0.1),
-                                           clamped<2>("left"), clamped<2>("left_below")},
-                            .pairs = {pair<2>("bottom", "top_below")}};
-  mesh::Mesh<2> mesh(on_block<2>(box<2>({1e-5, 0}, {2 + 1e-5, 1}, {3, 1}), {3, 1}));
-  const problem::Problem<2> problem(data.on(mesh));
-  const adapt::Discretisation<2> discrete(std::move(mesh), problem, {.degree = 3});
-  const certify::EnergyBound bound =
-      adapt::energy_bound<2>(discrete.form, {.degree = 3}, std::vector<double>(discrete.space.n_dofs(), 0.0));
-  EXPECT_NE(bound.reason.find("Tribound made it where it cut cells"), std::string::npos) << bound.reason;
-  EXPECT_EQ(bound.reason.find("mesh again"), std::string::npos) << bound.reason;
-}
-
 }  // namespace
 
 }  // namespace tribound::test

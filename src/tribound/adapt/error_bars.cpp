@@ -11,24 +11,12 @@
 #include "tribound/adapt/finer_contact.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
-#include "tribound/certify/equilibrate/too_flat.h"
 
 namespace tribound::adapt
 {
 
 namespace
 {
-
-/// Adapts the message on cells that are too flat where the mesh is not the user's: "... times as long as
-/// high; Tribound made it".
-std::string words_of_cut_cells(std::string why)
-{
-  if (!why.ends_with(certify::advice_on_flat_cells)) return why;
-  why.resize(why.size() - certify::advice_on_flat_cells.size());
-  return why +
-         "; Tribound made it where it cut cells until the facets of the bodies matched. First meshes with "
-         "facets of like size on both sides avoid that";
-}
 
 /// work(), or the reason why it fails.
 certify::EnergyBound attempt(const Ranks& ranks, const std::function<certify::EnergyBound()>& work)
@@ -71,12 +59,12 @@ certify::EnergyBound added_up(certify::EnergyBound bound, std::span<const Index>
   return bound;
 }
 
-/// `is_cut`: whether Tribound made this mesh by cutting cells until facets match.
+/// Where the state of contact changes on cells that are bisected, or else on this mesh.
 template <int dim>
 certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, const Method& method,
                                      std::span<const double> u,
                                      const std::vector<problem::Quantity<dim>>& quantities,
-                                     std::optional<double> korn, bool is_cut)
+                                     std::optional<double> korn)
 {
   const Ranks& ranks = form.space().mesh().ranks();
   const auto on_this_mesh = [&]
@@ -88,18 +76,23 @@ certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, cons
     return added_up(certify::EnergyEstimator<dim>(*finer->form, method.solver, quantities, korn)(finer->u),
                     finer->parent, form.space().mesh().n_owned_cells());
   };
-  const auto where_it_matches = [&]
-  {
-    const auto matching = matching_contact<dim>(form, u);
-    if (!matching) return on_this_mesh();
-    return added_up(bound_or_reason<dim>(*matching->form, method, matching->u, quantities, korn, true),
-                    matching->parent, form.space().mesh().n_owned_cells());
-  };
   certify::EnergyBound bound = attempt(ranks, where_it_is_finer);
-  if (bound.reason.empty()) return bound;
-  bound = attempt(ranks, where_it_matches);
-  if (is_cut) bound.reason = words_of_cut_cells(std::move(bound.reason));
+  if (!bound.reason.empty()) bound = attempt(ranks, on_this_mesh);
   return bound;
+}
+
+/// 2D: the bound on a mesh with cells cut until facets match, which is the sharper one; a reason where there
+/// is none.
+template <int dim>
+certify::EnergyBound where_it_matches(const contact::NitscheForm<dim>& form, const Method& method,
+                                      std::span<const double> u,
+                                      const std::vector<problem::Quantity<dim>>& quantities,
+                                      std::optional<double> korn)
+{
+  const auto matching = matching_contact<dim>(form, u);
+  if (!matching) return {.reason = "meshes match, or cannot be made to"};
+  return added_up(bound_or_reason<dim>(*matching->form, method, matching->u, quantities, korn),
+                  matching->parent, form.space().mesh().n_owned_cells());
 }
 
 }  // namespace
@@ -110,7 +103,9 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
                                   const std::vector<problem::Quantity<dim>>& quantities,
                                   std::optional<double> korn)
 {
-  certify::EnergyBound bound = bound_or_reason<dim>(form, method, u, quantities, korn, false);
+  certify::EnergyBound bound = attempt(form.space().mesh().ranks(),
+                                       [&] { return where_it_matches(form, method, u, quantities, korn); });
+  if (!bound.reason.empty()) bound = bound_or_reason<dim>(form, method, u, quantities, korn);
   if (bound.quantities.size() == quantities.size()) return bound;
   return certify::no_energy_bound<dim>(form, u, quantities, bound.reason);
 }

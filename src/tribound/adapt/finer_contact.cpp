@@ -168,6 +168,32 @@ void require_carried(const contact::NitscheForm<dim>& form, std::span<const doub
     throw SolveError("the solution changes its energy when it is transferred to the finer mesh");
 }
 
+namespace
+{
+
+/// Whether the cuts leave a facet that is so narrow that the bound is better without them.
+bool leave_slivers(std::span<const mesh::FacetCuts> cuts)
+{
+  constexpr double narrow = 0.04;  // of a facet
+  return std::ranges::any_of(cuts,
+                             [](const mesh::FacetCuts& facet)
+                             {
+                               double last = 0;
+                               for (const double at : facet.at)
+                                 if (at - std::exchange(last, at) < narrow) return true;
+                               return 1 - last < narrow;
+                             });
+}
+
+template <int dim>
+bool any_is_tied(std::span<const contact::ContactSegment<dim>> segments)
+{
+  return std::ranges::any_of(segments, [](const contact::ContactSegment<dim>& segment)
+                             { return problem::cone(segment.contact->law).is_tied; });
+}
+
+}  // namespace
+
 template <int dim>
 std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
                                                     std::span<const double> u)
@@ -177,6 +203,8 @@ std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<d
     const mesh::Mesh<2>& mesh = form.space().mesh();
     if (contact::facets_match(mesh, form.segments())) return nullptr;
     const std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
+    if (mesh.ranks().any(leave_slivers(cuts)) && !mesh.ranks().any(any_is_tied(form.segments())))
+      return nullptr;
     auto result =
         carried<2>(form, u, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
     if (result && contact::facets_match(result->grid->mesh, result->form->segments())) return result;
@@ -193,7 +221,15 @@ std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::vector<Index> marked;
   for (const std::size_t k : certify::facets_in_transition<dim>(form, form.traction(u)))
-    if (k < form.n_owned_segments()) marked.push_back(form.segments()[k].slave.facet.cell);
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    const auto mark = [&](const contact::SegmentSide<dim>& side)
+    {
+      if (side.facet.cell < mesh.n_owned_cells()) marked.push_back(side.facet.cell);
+    };
+    mark(segment.slave);
+    if (segment.master && !contact::is_whole(mesh, segment)) mark(*segment.master);  // no twin follows
+  }
   if (!mesh.ranks().any(!marked.empty())) return nullptr;
   return carried<dim>(form, u,
                       finer_mesh<dim>(form.space(), {u}, marked,

@@ -31,8 +31,9 @@ void require_carried(const contact::NitscheForm<dim>& form, std::span<const doub
                      const FinerContact<dim>& finer);
 
 /// 2D: the solution on a mesh whose cells in contact are cut in fans where segments end, so that the facets
-/// of the bodies match. Null where they match already, where rounding prevents it, and in 3D. All ranks call
-/// it together. Throws InputError where the result is no valid mesh, and as require_carried().
+/// of the bodies match. Null where they match already, where rounding prevents it, in 3D, and where facets
+/// narrower than 0.04 times the old ones would come, unless bodies are tied, which have no bound otherwise.
+/// All ranks call it together. Throws InputError where the result is no valid mesh, and as require_carried().
 template <int dim>
 [[nodiscard]] std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
                                                                   std::span<const double> u);

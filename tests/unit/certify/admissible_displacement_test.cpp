@@ -371,9 +371,9 @@ TEST(AdmissibleDisplacementReasons, AreGiven)
       problem::NormalField({formula("x/sqrt(1 + x^2)"), formula("-1/sqrt(1 + x^2)")});
   EXPECT_EQ(reason(data, block<2>({4, 2})), "a direction of contact varies along facets");
   const ProblemData<2> bodies = {.boundaries = {clamped<2>("left"), clamped<2>("left below")},
-                                 .pairs = {pair<2>("bottom", "top below")}};
+                                 .pairs = {pair<2>("bottom", "top below", problem::Tied())}};
   EXPECT_EQ(reason(bodies, side_by_side(block<2>({4, 2}), box<2>({0, -1.1}, {2, -0.1}, {3, 2}), " below")),
-            "meshes of bodies in contact do not match");
+            "meshes of tied bodies do not match");
 }
 
 }  // namespace

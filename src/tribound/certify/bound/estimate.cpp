@@ -183,7 +183,7 @@ void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>
                                     Estimate& result) const
 {
   std::vector<TransferLifting<dim>> liftings;
-  for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions))
+  for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions.running()))
   {
     BoundComponents& eta = result.cells[cell];
     liftings.clear();

@@ -169,7 +169,25 @@ double TransferLifting<dim>::change(const std::function<Tensor<dim>(const Point<
   return smallest;
 }
 
+template <int dim>
+double transfer_loss(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree,
+                     std::span<const TractionPiece<dim>> pieces)
+{
+  const LoadedFacet<dim> loaded(mesh, facet, degree, pieces);
+  double square = 0;
+  if constexpr (dim == 3)
+    square = squares(loaded, pieces).plain;
+  else
+    for (const TransferLoss<dim>& loss : transfer_losses(loaded, pieces))
+      square += loss.weight * loss.r.squaredNorm();
+  return std::sqrt(square);
+}
+
 template class TransferLifting<2>;
 template class TransferLifting<3>;
+template double transfer_loss(const mesh::Mesh<2>&, const mesh::BoundaryFacet&, int,
+                              std::span<const TractionPiece<2>>);
+template double transfer_loss(const mesh::Mesh<3>&, const mesh::BoundaryFacet&, int,
+                              std::span<const TractionPiece<3>>);
 
 }  // namespace tribound::certify

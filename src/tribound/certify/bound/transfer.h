@@ -81,4 +81,9 @@ class TransferLifting
   double norm_;
 };
 
+/// ||r||_F alone.
+template <int dim>
+[[nodiscard]] double transfer_loss(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet, int degree,
+                                   std::span<const TractionPiece<dim>> pieces);
+
 }  // namespace tribound::certify

@@ -73,22 +73,16 @@ std::vector<std::vector<TractionPiece<dim>>> grouped(std::vector<Covered<dim>>&&
 template <int dim>
 std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::NitscheForm<dim>& form,
                                                                  const ContactTerms<dim>& terms,
-                                                                 const typename Stress<dim>::Tractions& t)
+                                                                 std::span<const Point<dim>> t)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::map<std::size_t, std::vector<Covered<dim>>> of_facet;
-  std::vector<Point<dim>> running(form.n_segment_points());
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (!segment.master) continue;
-    for (std::size_t q = 0; q < running.size(); ++q)
-    {
-      const std::size_t i = k * running.size() + q;
-      running[q] = t.dis[i] + t.lin[i];
-      if (!t.reg.empty()) running[q] += t.reg[i];
-    }
-    const std::vector<Point<dim>> q_k = terms.project(running);
+    const auto n = static_cast<std::size_t>(form.n_segment_points());
+    const std::vector<Point<dim>> q_k = terms.project(t.subspan(k * n, n));
     segment.for_each_side(
         [&](const contact::SegmentSide<dim>& side)
         {
@@ -116,9 +110,9 @@ std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::
 
 template std::map<Index, std::vector<FacetTransfer<2>>> facet_transfers(const contact::NitscheForm<2>&,
                                                                         const ContactTerms<2>&,
-                                                                        const Stress<2>::Tractions&);
+                                                                        std::span<const Point<2>>);
 template std::map<Index, std::vector<FacetTransfer<3>>> facet_transfers(const contact::NitscheForm<3>&,
                                                                         const ContactTerms<3>&,
-                                                                        const Stress<3>::Tractions&);
+                                                                        std::span<const Point<3>>);
 
 }  // namespace tribound::certify

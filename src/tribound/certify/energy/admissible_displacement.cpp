@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribound/certify/energy/control_point.h"
+#include "tribound/certify/energy/kept_apart.h"
 #include "tribound/certify/energy/obstacle_facets.h"
 
 namespace tribound::certify
@@ -36,6 +37,11 @@ struct FacetState
     return closed == Extent::somewhere || sticks == Extent::somewhere;
   }
 };
+
+bool holds(Extent extent, bool transition_is_closed)
+{
+  return extent == Extent::everywhere || (transition_is_closed && extent == Extent::somewhere);
+}
 
 Extent extent(int n_there, int n)
 {
@@ -71,18 +77,19 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   return state;
 }
 
-/// The control points of the slaves of all facets. What a facet in transition does at some points counts as
-/// done everywhere, or not at all.
+/// The control points of the slaves of all facets that match. What a facet in transition does at some points
+/// counts as done everywhere, or not at all.
 template <int dim>
 class ControlPoints
 {
  public:
   ControlPoints(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
                 std::span<const double> u, std::span<const FacetState> states)
-      : form_(form), facets_(facets), states_(states)
+      : form_(form), facets_(facets), states_(states), beside_(facets.between_meshes())
   {
     for (std::size_t k = 0; k < states.size(); ++k)
     {
+      if (!facets.matches(k)) continue;
       const std::vector<Point<dim>> on_slave = facets.on_slave(k, u);
       const std::vector<Point<dim>> on_master = facets.on_master(k, u);
       const std::span<const Index> masters = facets.master_nodes(k);
@@ -104,8 +111,10 @@ class ControlPoints
       std::array<bool, dim> fixed;
       for (int a = 0; a < dim; ++a) fixed[a] = is_fixed(node, a) && (master < 0 || is_fixed(master, a));
       const Point<dim> from_opposite = at.position - at.places.front().opposite;
-      const Point<dim> step =
-          moved<dim>(from_opposite, fixed, conditions(at, transition_is_closed)) - from_opposite;
+      std::vector<ControlCondition<dim>> conditions = this->conditions(at, transition_is_closed);
+      if (beside_[dim * node] != 0)  // it is kept apart from another mesh as well: no equalities
+        for (ControlCondition<dim>& condition : conditions) condition.closed = condition.sticks = false;
+      const Point<dim> step = moved<dim>(from_opposite, fixed, conditions) - from_opposite;
       for (int a = 0; a < dim; ++a)
         if (!is_fixed(node, a))
           result[dim * node + a] += step[a];
@@ -146,8 +155,6 @@ class ControlPoints
   [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
                                                               bool transition_is_closed) const
   {
-    const auto holds = [&](Extent extent)
-    { return extent == Extent::everywhere || (transition_is_closed && extent == Extent::somewhere); };
     constexpr double same = 1e-12;
     std::vector<ControlCondition<dim>> result;
     for (const auto& [k, j, master, opposite] : at.places)
@@ -158,8 +165,8 @@ class ControlPoints
           result, [&](const ControlCondition<dim>& other) { return (other.normal - normal).norm() <= same; });
       if (found == result.end()) found = result.insert(found, {.normal = normal, .gap = gap});
       found->gap = std::min(found->gap, gap);
-      found->closed = found->closed || holds(states_[k].closed);
-      found->sticks = found->sticks || holds(states_[k].sticks);
+      found->closed = found->closed || holds(states_[k].closed, transition_is_closed);
+      found->sticks = found->sticks || holds(states_[k].sticks, transition_is_closed);
       found->pressure += states_[k].pressure;
       found->friction += states_[k].friction;
     }
@@ -169,6 +176,7 @@ class ControlPoints
   const contact::NitscheForm<dim>& form_;
   const ObstacleFacets<dim>& facets_;
   std::span<const FacetState> states_;
+  std::vector<char> beside_;              ///< degrees of freedom that are also on facets that do not match
   std::map<Index, ControlPoint> points_;  ///< by node
 };
 
@@ -181,6 +189,7 @@ std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const
   for (std::size_t k = 0; k < facets.size(); ++k)
     for (const std::span<const Index> nodes : {facets.nodes(k), facets.master_nodes(k)})
     {
+      if (!facets.matches(k)) continue;
       const std::vector<Point<dim>> change = facets.values(nodes, corrections);
       for (std::size_t i = 0; i < nodes.size(); ++i)
         for (int a = 0; a < dim; ++a)
@@ -246,13 +255,21 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
   {
     // If a slave is the master of another one, the other has to follow.
     constexpr int most_sweeps = 5;
-    std::vector<double> v(u.begin(), u.end());
-    for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    std::vector<WantedContact> wanted;
+    for (const FacetState& state : states)
+      wanted.push_back(
+          {holds(state.closed, transition_is_closed), holds(state.sticks, transition_is_closed)});
+    for (const MovedSide side : {MovedSide::preferred, MovedSide::other})  // it may be fixed
     {
-      const ControlPoints<dim> control_points(form, facets, v, states);
-      v = with_corrections<dim>(form.space(), facets, v, control_points.corrections(transition_is_closed));
-      beyond = excess<dim>(form, facets, v);
-      if (beyond <= most) return v;
+      std::vector<double> v(u.begin(), u.end());
+      for (int sweep = 0; sweep < most_sweeps; ++sweep)
+      {
+        const ControlPoints<dim> control_points(form, facets, v, states);
+        v = with_corrections<dim>(form.space(), facets, v, control_points.corrections(transition_is_closed));
+        v = kept_apart<dim>(form, facets, side, wanted, v);
+        beyond = excess<dim>(form, facets, v);
+        if (beyond <= most) return v;
+      }
     }
     return {};
   };

@@ -40,11 +40,11 @@ struct AdmissibleDisplacements
 ///     v^t = 0 if it or one of the facets sticks, else as in u;
 /// they never move along axes that Gamma_D fixes. Between bodies [v] takes the place of v; the slaves move,
 /// or the masters where slaves are fixed. Where facets with different normals meet:
-/// certify/energy/control_point.h. The basis is nonnegative and adds up to 1, so what holds for the
-/// coefficients holds for v.
+/// certify/energy/control_point.h; where meshes do not match: certify/energy/kept_apart.h. The basis is
+/// nonnegative and adds up to 1, so what holds for the coefficients holds for v.
 ///
-/// t is T(u) at the contact points of the form. Contact must act along constant directions, between bodies on
-/// matching meshes, without bond and water; otherwise `reason` says why not. All ranks together.
+/// t is T(u) at the contact points of the form. If obstacles_unfit() objects, `reason` says why. All ranks
+/// together.
 template <int dim>
 [[nodiscard]] AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>& form,
                                                                std::span<const double> u,

@@ -46,6 +46,7 @@ ContactSlack<dim>::ContactSlack(const BoundedState<dim>& state)
   stress_ = rounding * largest[1];
   for (std::size_t k = 0; k < state.facets.size(); ++k)
   {
+    if (!state.facets.matches(k)) continue;
     if (problem::cone(state.form.segments()[k].contact->law).is_tied)
     {
       set_tied(k);

@@ -25,8 +25,8 @@ struct Slack
 ///     closed, v^n = g_h:   |r^n| <= m (-t^n);       open, t^n = 0:            |y^n| <= m (g_h - v^n);
 ///     stick, v^t = 0:      |r^t| <= m (s - |t^t|);  slip, t^t = -s v^t/|v^t|: |y^t| <= m |v^t| (2D: v^t of
 ///     one sign); without friction y^t is free, between tied bodies r;
-/// everything else is 0; between bodies [v] takes the place of v. The limits for coefficients hold at every
-/// point, since both sides are in the same nonnegative basis.
+/// everything else is 0, also between meshes that do not match; between bodies [v] takes the place of v. The
+/// limits for coefficients hold at every point, since both sides are in the same nonnegative basis.
 template <int dim>
 class ContactSlack
 {

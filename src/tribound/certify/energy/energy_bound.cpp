@@ -80,6 +80,7 @@ struct EnergyEstimator<dim>::Parts
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
+        terms(form, ContactRule::reference),
         oscillation(load_oscillation(form, korn))
   {
   }
@@ -99,6 +100,7 @@ struct EnergyEstimator<dim>::Parts
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
+  ContactTerms<dim> terms;
   LoadOscillation oscillation;
 };
 
@@ -129,7 +131,7 @@ namespace
 /// E of v and the stress that carries t_h, and the bounds that follow.
 template <int dim, class Parts>
 EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
-                       std::span<const double> u, std::span<const double> v)
+                       std::span<const double> transfer, std::span<const double> u, std::span<const double> v)
 {
   const contact::NitscheForm<dim>& form = parts.form;
   CellDistances cells;
@@ -137,14 +139,16 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
                                   [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
   EnergyBound result;
   result.cells = cells.square;
-  std::array<double, 6> sums{};  // ||tau - sigma(v)||^2, A^2, ||O||^2, ||c||^2, dist^2, G_c
-  auto& [square, a_square, o_square, c_square, dist_square, g] = sums;
+  std::array<double, 7> sums{};  // ||tau - sigma(v)||^2, A^2, ||O||^2, of transfer, ||c||^2, dist^2, G_c
+  auto& [square, a_square, o_square, e_square, c_square, dist_square, g] = sums;
   for (std::size_t k = 0; k < cells.square.size(); ++k)
   {
-    const double o = parts.oscillation.cells[k];
+    const double o = parts.oscillation.cells[k] + transfer[k];
     square += cells.square[k];
-    a_square += std::pow(std::sqrt(cells.square[k]) + o, 2);
+    result.cells[k] = std::pow(std::sqrt(cells.square[k]) + o, 2);
+    a_square += result.cells[k];
     o_square += o * o;
+    e_square += transfer[k] * transfer[k];
     c_square += cells.correction[k];
     dist_square += cells.to_discrete[k];
   }
@@ -161,6 +165,7 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   const double a = std::sqrt(a_square) + parts.oscillation.missed;
   result.contact = g;
   result.oscillation = std::sqrt(o_square) + parts.oscillation.missed;
+  result.transfer = std::sqrt(e_square);
   result.correction = std::sqrt(c_square);
   result.dist = std::sqrt(dist_square);
   result.b_v = a / 2 + std::sqrt(a * a / 4 + g);
@@ -216,12 +221,13 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
     return {.reason = "an identity of the equilibrated stress is violated"};
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};
+  const std::vector<double> transfer = transfer_oscillation<dim>(form, parts_->terms, t_h.at_points);
   EnergyBound best{.reason = "no displacement near the computed one is admissible"};
   for (const bool is_open : {true, false})
   {
     const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;
     if (!candidate || (!is_open && !v.has_transition && v.open)) continue;
-    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, rich_u, *candidate);
+    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, transfer, rich_u, *candidate);
     bound.is_open = is_open;
     if (!best.reason.empty() || (bound.reason.empty() && bound.bound < best.bound)) best = std::move(bound);
   }

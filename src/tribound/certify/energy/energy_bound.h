@@ -39,12 +39,13 @@ struct EnergyBound
   double gap = 0;                  ///< E, the duality gap of v and tau, plus ||O|| B_v
   double correction = 0;           ///< ||u_h - v||_en
   double contact = 0;              ///< G_c
-  double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials
+  double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials, and transfer
+  double transfer = 0;             ///< of ||O||: what tractions lose between meshes that do not match
   double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance
   double gap_remainder = 0;        ///< largest |g - g_h| at the contact points; length
   double threshold_remainder = 0;  ///< largest |s - s_h| there; stress
   bool is_open = true;  ///< whether v with facets in transition taken as open and slipping is the better one
-  /// Per own cell ||tau - sigma(v)||^2 + 4 G_F of its facets, for marking.
+  /// Per own cell A_T^2 + 4 G_F of its facets, A_T = ||tau - sigma(v)|| + O_T, for marking.
   std::vector<double> cells{};
   /// Intervals of the requested numbers. Those that follow from equilibrium exist even without a bound.
   std::vector<QuantityInterval> quantities{};

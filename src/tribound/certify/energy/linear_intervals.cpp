@@ -162,6 +162,7 @@ void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natu
 {
   const fem::LagrangeSpace<dim>& space = state_.form.space();
   std::vector<char> at_rest = state_.junctions;
+  const std::vector<char> between = state_.facets.between_meshes();
   const auto for_each_master = [&](const auto& visit)
   {
     for (std::size_t k = 0; k < state_.facets.size(); ++k)
@@ -173,7 +174,7 @@ void LinearIntervals<dim>::set_opposite(std::span<const double> z, Natural& natu
       [&](Index slave, Index master)
       {
         const auto is_set = [](char flag) { return flag != 0; };
-        if (state_.junctions[slave] != 0 ||
+        if (state_.junctions[slave] != 0 || between[slave] != 0 ||
             std::ranges::any_of(std::span(&state_.form.constraints().fixed[slave], dim), is_set))
           at_rest[master] = 1;
       });
@@ -195,8 +196,9 @@ std::vector<double> LinearIntervals<dim>::trace(const LinearNumber<dim>& number,
       for (int a = 0; a < dim; ++a)
       {
         const Index slave = dim * state_.facets.nodes(k)[i] + a;
+        const bool has_opposite = !masters.empty() && state_.facets.matches(k);
         result[slave] = jumps[i][a] - (number.weight ? number.weight->at_nodes[slave] : 0) +
-                        (masters.empty() ? 0 : natural.opposite[dim * masters[i] + a]);
+                        (has_opposite ? natural.opposite[dim * masters[i] + a] : 0);
       }
   }
   space.update(std::span(result));

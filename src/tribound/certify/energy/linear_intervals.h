@@ -46,7 +46,7 @@ class LinearIntervals
   struct Natural
   {
     std::vector<double> y;         ///< [z] + phi on Gamma_C, coefficients in Bernstein's basis by node
-    std::vector<double> opposite;  ///< z at the nodes of masters
+    std::vector<double> opposite;  ///< z at the nodes of masters; 0 where meshes do not match
     std::vector<Point<dim>> r;     ///< tractions of the springs, coefficients facet by facet
   };
   [[nodiscard]] Natural natural(const LinearNumber<dim>& number) const;

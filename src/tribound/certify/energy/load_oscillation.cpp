@@ -5,9 +5,29 @@
 #include <limits>
 
 #include "tribound/certify/bound/poincare_korn.h"
+#include "tribound/certify/bound/transfer_terms.h"
 
 namespace tribound::certify
 {
+
+namespace
+{
+
+template <int dim>
+PoincareKorn<dim> constants_of(const mesh::Mesh<dim>& mesh, Index cell)
+{
+  return poincare_korn<dim>(mesh::points_of(mesh.vertices(), mesh.cell(cell)));
+}
+
+/// The largest s with s |eps|^2 <= C eps : eps.
+template <int dim>
+double stiffness_of(const contact::NitscheForm<dim>& form, Index cell)
+{
+  const problem::Material& material = form.problem().material(form.space().mesh().region(cell));
+  return std::min(2 * material.mu, 2 * material.mu + dim * material.lambda);
+}
+
+}  // namespace
 
 /// f - Pi f and g_N - Pi g_N are orthogonal to rigid motions by quadrature. Their projections on them are at
 /// most (d + 1) e_T |T|^{-1/2} and d e_F |F|^{-1/2}, if e bounds what it misses, since affine functions are
@@ -21,20 +41,18 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double k
   const Index n_cells = mesh.n_owned_cells();
   LoadOscillation result{.cells = std::vector<double>(n_cells, 0.0)};
   std::vector<double> missed(n_cells, 0.0);
-  const auto constants = [&](Index cell)
-  { return poincare_korn<dim>(mesh::points_of(mesh.vertices(), mesh.cell(cell))); };
   for (Index c = 0; c < n_cells; ++c)
   {
     const auto [oscillation, mean] = data.body_remainder(c);
     missed[c] = mean;
-    if (oscillation > 0) result.cells[c] = constants(c).cell * oscillation;
+    if (oscillation > 0) result.cells[c] = constants_of(mesh, c).cell * oscillation;
   }
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
     const auto [oscillation, mean] = data.traction_remainder(k);
     if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    const PoincareKorn<dim> of_cell = constants(facet.cell);
+    const PoincareKorn<dim> of_cell = constants_of(mesh, facet.cell);
     const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     result.cells[facet.cell] += of_cell.facets[facet.local] * oscillation +
                                 of_cell.traces[facet.local] * dim * mean / std::sqrt(measure);
@@ -44,8 +62,7 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double k
   double least = std::numeric_limits<double>::infinity();  // of the stiffness
   for (Index c = 0; c < n_cells; ++c)
   {
-    const problem::Material& material = form.problem().material(mesh.region(c));
-    const double stiffness = std::min(2 * material.mu, 2 * material.mu + dim * material.lambda);
+    const double stiffness = stiffness_of(form, c);
     least = std::min(least, stiffness);
     result.cells[c] /= std::sqrt(stiffness);
     if (missed[c] > 0) squares += missed[c] * missed[c] / mesh::cell_map(mesh, c).measure();
@@ -56,7 +73,31 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double k
   return result;
 }
 
+/// The facets carry projections of degree >= 1, so the rest is orthogonal to rigid motions.
+template <int dim>
+std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
+                                         const ContactTerms<dim>& terms, std::span<const Point<dim>> t)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  std::vector<double> result(mesh.n_owned_cells(), 0.0);
+  for (const auto& [cell, transfers] : facet_transfers<dim>(form, terms, t))
+  {
+    double sum = 0;
+    for (const FacetTransfer<dim>& transfer : transfers)
+      for (const auto& pieces : transfer.groups)
+        sum += constants_of(mesh, cell).facets[transfer.facet.local] *
+               transfer_loss<dim>(mesh, transfer.facet, form.space().degree(), pieces);
+    result[cell] = sum / std::sqrt(stiffness_of(form, cell));
+  }
+  return result;
+}
+
 template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, double);
 template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, double);
+
+template std::vector<double> transfer_oscillation(const contact::NitscheForm<2>&, const ContactTerms<2>&,
+                                                  std::span<const Point<2>>);
+template std::vector<double> transfer_oscillation(const contact::NitscheForm<3>&, const ContactTerms<3>&,
+                                                  std::span<const Point<3>>);
 
 }  // namespace tribound::certify

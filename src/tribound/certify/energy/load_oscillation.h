@@ -1,10 +1,13 @@
 #pragma once
 
 /// @file load_oscillation.h
-/// What loads that are no polynomials add to the energy bound, method section 13.5.
+/// What loads that are no polynomials, and contact tractions between meshes that do not match, add to the
+/// energy bound, method sections 13.3 and 13.5.
 
+#include <span>
 #include <vector>
 
+#include "tribound/certify/bound/contact_terms.h"
 #include "tribound/contact/nitsche/nitsche.h"
 
 namespace tribound::certify
@@ -21,5 +24,13 @@ struct LoadOscillation
 /// `korn` is K of certify/bound/korn.h. All ranks together.
 template <int dim>
 [[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double korn);
+
+/// |(t, [w])_C - (Pi_F t, w)_S + (Pi_G t, w)_M| <= sum_T e_T ||w||_en,T: e_T of the own cells, for t at the
+/// contact points, Pi_F and Pi_G the projections of the tractions on the facets of slave and master, method
+/// section 11.4. 0 where meshes match.
+template <int dim>
+[[nodiscard]] std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
+                                                       const ContactTerms<dim>& terms,
+                                                       std::span<const Point<dim>> t);
 
 }  // namespace tribound::certify

@@ -48,8 +48,12 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
             return cone.is_bonded;
           }))
     return "a contact law has a bond";
-  if (!contact::facets_match(form.space().mesh(), form.segments()))
-    return "meshes of bodies in contact do not match";
+  if (any(
+          [&](const Segment& segment) {
+            return problem::cone(segment.contact->law).is_tied &&
+                   !contact::is_whole(form.space().mesh(), segment);
+          }))
+    return "meshes of tied bodies do not match";
   return {};
 }
 
@@ -70,21 +74,53 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
     const mesh::BoundaryFacet& facet = segment.slave.facet;
     const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
     const bool is_tied = problem::cone(segment.contact->law).is_tied;
+    const bool is_whole = contact::is_whole(mesh, segment);
+    parts_.push_back(is_whole ? -1 : static_cast<std::ptrdiff_t>(of_parts_.size()));
+    if (!is_whole) add_part(segment);
     for (std::size_t j = 0; j < n_; ++j)
     {
       const Point<dim - 1> s = basis_.node_point(static_cast<int>(j));
-      const Index node = node_at<dim>(space, facet, segment.slave.on_facet(s));
-      const Point<dim> x =
-          node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node)) : map(segment.slave.on_facet(s));
+      const auto node_of = [&](const contact::SegmentSide<dim>& side)
+      { return node_at<dim>(space, side.facet, is_whole ? side.on_facet(s) : s); };
+      const Index node = node_of(segment.slave);
+      const Point<dim> x = is_whole && node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node))
+                                                                : map(segment.slave.on_facet(s));
       nodes_.push_back(node);
-      master_nodes_.push_back(
-          segment.master ? node_at<dim>(space, segment.master->facet, segment.master->on_facet(s)) : -1);
+      master_nodes_.push_back(segment.master ? node_of(*segment.master) : -1);
       nodal_gaps_.push_back(is_tied ? 0 : segment.gap(s, x, segment.normal));
     }
     for (std::size_t j = 0; j < n_; ++j)
       for (std::size_t i = 0; i < n_; ++i)
         gaps_[k * n_ + j] += from_values_[j * n_ + i] * nodal_gaps_[k * n_ + i];
   }
+}
+
+template <int dim>
+void ObstacleFacets<dim>::add_part(const contact::ContactSegment<dim>& segment)
+{
+  const auto add_side = [&](const contact::SegmentSide<dim>& side)
+  {
+    std::vector<Point<dim - 1>> points;
+    for (std::size_t i = 0; i < n_; ++i)
+      points.push_back(side.on_facet(basis_.node_point(static_cast<int>(i))));
+    const fem::Tabulation<dim - 1> table = basis_.tabulate(points);
+    for (std::size_t j = 0; j < n_; ++j)
+      for (std::size_t l = 0; l < n_; ++l)
+      {
+        double sum = 0;
+        for (std::size_t i = 0; i < n_; ++i)
+          sum += from_values_[j * n_ + i] * table.values_at(static_cast<int>(i))[l];
+        of_parts_.push_back(sum);
+      }
+  };
+  segment.for_each_side(add_side);
+}
+
+template <int dim>
+std::span<const double> ObstacleFacets<dim>::on_segment(std::size_t k, int side) const
+{
+  return matches(k) ? std::span<const double>(from_values_)
+                    : std::span(of_parts_).subspan(parts_[k] + side * n_ * n_, n_ * n_);
 }
 
 template <int dim>
@@ -122,7 +158,7 @@ std::vector<Point<dim>> ObstacleFacets<dim>::transformed(std::span<const Index> 
 template <int dim>
 std::vector<Point<dim>> ObstacleFacets<dim>::on_master(std::size_t k, std::span<const double> u) const
 {
-  return transformed(master_nodes(k), from_values_, u);
+  return transformed(master_nodes(k), on_segment(k, 1), u);
 }
 
 template <int dim>
@@ -130,18 +166,32 @@ std::vector<char> ObstacleFacets<dim>::junctions() const
 {
   const fem::LagrangeSpace<dim>& space = form_.space();
   constexpr Index unknown = -2;
+  constexpr Index between_nodes = -3;
   std::vector<Index> opposite(space.n_dofs() / dim, unknown);
   std::vector<char> result(space.n_dofs(), 0);
   const auto mark = [&](Index node) { std::fill_n(&result[dim * node], dim, 1); };
   for (std::size_t i = 0; i < nodes_.size(); ++i)
   {
     Index& known = opposite[nodes_[i]];
-    if (known != unknown && known != master_nodes_[i]) mark(nodes_[i]);
-    known = master_nodes_[i];
+    const Index partner = matches(i / n_) ? master_nodes_[i] : between_nodes;
+    if (known != unknown && known != partner) mark(nodes_[i]);
+    known = partner;
   }
   for (const Index node : master_nodes_)
     if (node >= 0 && opposite[node] != unknown) mark(node);
   space.update(std::span(result));
+  return result;
+}
+
+template <int dim>
+std::vector<char> ObstacleFacets<dim>::between_meshes() const
+{
+  std::vector<char> result(form_.space().n_dofs(), 0);
+  for (std::size_t k = 0; k < size(); ++k)
+    for (const std::span<const Index> side : {nodes(k), master_nodes(k)})
+      for (const Index node : side)
+        if (!matches(k)) std::fill_n(&result[dim * node], dim, 1);
+  form_.space().update(std::span(result));
   return result;
 }
 

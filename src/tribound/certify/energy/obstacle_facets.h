@@ -1,10 +1,10 @@
 #pragma once
 
 /// @file obstacle_facets.h
-/// Displacements and gaps in Bernstein's basis on the facets that may touch rigid obstacles or matching
-/// facets of other bodies.
+/// Displacements and gaps in Bernstein's basis on the segments of Gamma_C.
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,15 +16,16 @@
 namespace tribound::certify
 {
 
-/// Why v^n - g_h is not a polynomial on some facet of Gamma_C, or why contact there is more than v^n <= g;
-/// empty if neither is so. The same on all ranks, which call it together.
+/// Why v^n - g_h is not a polynomial on some segment of Gamma_C, or why contact there is more than v^n <= g,
+/// or [v] = 0 between meshes that do not match; empty if nothing is so. The same on all ranks, which call it
+/// together.
 template <int dim>
 [[nodiscard]] std::string obstacles_unfit(const contact::NitscheForm<dim>& form);
 
-/// The facets of Gamma_C, numbered like the segments of the form. Coefficient j of a facet belongs to its
-/// node j; facets share coefficients on common vertices and edges. Between bodies every node of the slave has
-/// one of the master opposite. Keeps a reference to the form, to which obstacles_unfit() must have no
-/// objection.
+/// The segments of Gamma_C, numbered as in the form. If a segment is a whole facet, against an obstacle or a
+/// facet that matches, its coefficient j belongs to node j, every node of the slave has one of the master
+/// opposite, and facets share coefficients on common vertices and edges. Keeps a reference to the form, to
+/// which obstacles_unfit() must have no objection.
 template <int dim>
 class ObstacleFacets
 {
@@ -32,19 +33,24 @@ class ObstacleFacets
   explicit ObstacleFacets(const contact::NitscheForm<dim>& form);
 
   [[nodiscard]] std::size_t size() const { return form_.segments().size(); }
-  /// Nodes of the space on facet k, on the slave.
+  /// Whether segment k is the whole of its facets.
+  [[nodiscard]] bool matches(std::size_t k) const { return parts_[k] < 0; }
+  /// Nodes of the space on the slave's facet: opposite to those of the master if they match, else in the
+  /// order of the basis.
   [[nodiscard]] std::span<const Index> nodes(std::size_t k) const
   {
     return std::span(nodes_).subspan(k * n_, n_);
   }
-  /// The nodes of the master opposite to these; none against an obstacle.
+  /// The nodes on the master's facet; none against an obstacle.
   [[nodiscard]] std::span<const Index> master_nodes(std::size_t k) const
   {
     return std::span(master_nodes_).subspan(k * n_, form_.segments()[k].master ? n_ : 0);
   }
   /// Marks degrees of freedom of slave nodes that have more than one opposite partner or are masters as well.
-  /// All ranks together.
+  /// Nodes of facets that do not match have one partner, "between nodes". All ranks together.
   [[nodiscard]] std::vector<char> junctions() const;
+  /// Marks degrees of freedom on facets that do not match. All ranks together.
+  [[nodiscard]] std::vector<char> between_meshes() const;
   /// Coefficients of g_h, the interpolant of g of degree p.
   [[nodiscard]] std::span<const double> gap(std::size_t k) const
   {
@@ -55,7 +61,7 @@ class ObstacleFacets
   /// Coefficients of u on the slave, and on the master: 0 against an obstacle.
   [[nodiscard]] std::vector<Point<dim>> on_slave(std::size_t k, std::span<const double> u) const
   {
-    return transformed(nodes(k), from_values_, u);
+    return transformed(nodes(k), on_segment(k, 0), u);
   }
   [[nodiscard]] std::vector<Point<dim>> on_master(std::size_t k, std::span<const double> u) const;
   /// Values at the nodes of the slave or of the master as degrees of freedom, from coefficients by node.
@@ -68,6 +74,9 @@ class ObstacleFacets
   [[nodiscard]] double gap_remainder() const;
 
  private:
+  /// Maps values at the nodes of a side (0: slave) to coefficients on segment k.
+  [[nodiscard]] std::span<const double> on_segment(std::size_t k, int side) const;
+  void add_part(const contact::ContactSegment<dim>& segment);
   [[nodiscard]] std::vector<Point<dim>> transformed(std::span<const Index> nodes,
                                                     std::span<const double> matrix,
                                                     std::span<const double> by_node) const;
@@ -78,8 +87,10 @@ class ObstacleFacets
   std::vector<double> to_values_;
   std::vector<double> from_values_;
   std::vector<Index> nodes_;
-  std::vector<Index> master_nodes_;  ///< opposite; -1 against an obstacle
-  std::vector<double> nodal_gaps_;
+  std::vector<Index> master_nodes_;    ///< opposite; -1 against an obstacle
+  std::vector<std::ptrdiff_t> parts_;  ///< where its matrices begin in of_parts_; -1 if it matches
+  std::vector<double> of_parts_;
+  std::vector<double> nodal_gaps_;  ///< at the nodes of segments
   std::vector<double> gaps_;
 };
 

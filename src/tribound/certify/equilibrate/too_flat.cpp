@@ -28,7 +28,8 @@ SolveError no_equilibrated_stress(const Point<dim>& place, double slenderness)
   constexpr double slender = 1000;  // patches of degree 4 still factor
   const std::string why =
       slenderness > slender
-          ? fmt::format("a cell there is {:.2g} times as long as high{}", slenderness, advice_on_flat_cells)
+          ? fmt::format("a cell there is {:.2g} times as long as high: mesh again, with rounder cells",
+                        slenderness)
           : std::string("numbers there differ by too many powers of ten: check units, sizes and materials");
   return SolveError(fmt::format("there is no equilibrated stress at {}: {}", mesh::describe(place), why));
 }

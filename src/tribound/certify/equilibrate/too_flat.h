@@ -3,8 +3,6 @@
 /// @file too_flat.h
 /// The message where rounding leaves no equilibrated stress.
 
-#include <string_view>
-
 #include "tribound/base/error.h"
 #include "tribound/certify/equilibrate/sorted_cell.h"
 
@@ -14,9 +12,6 @@ namespace tribound::certify
 /// The longest edge over the smallest height.
 template <int dim>
 [[nodiscard]] double slenderness(const SortedCell<dim>& cell);
-
-/// How the message ends where cells are too flat, for those who know that the cells are not the user's.
-inline constexpr std::string_view advice_on_flat_cells = ": mesh again, with rounder cells";
 
 /// What to throw where a matrix that should be positive definite is not: the place, and why.
 template <int dim>

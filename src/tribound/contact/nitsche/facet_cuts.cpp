@@ -20,9 +20,8 @@ constexpr double shortest = 1e-9;
 template <int dim>
 bool facets_match(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments)
 {
-  return !mesh.ranks().any(
-      std::ranges::any_of(segments, [&](const ContactSegment<dim>& segment)
-                          { return !segment.is_obstacle_facet() && !matching_facets<dim>(mesh, segment); }));
+  return !mesh.ranks().any(!std::ranges::all_of(
+      segments, [&](const ContactSegment<dim>& segment) { return is_whole(mesh, segment); }));
 }
 
 std::vector<mesh::FacetCuts> facet_cuts(const mesh::Mesh<2>& mesh,

@@ -12,8 +12,14 @@
 namespace tribound::contact
 {
 
-/// Whether every segment is a whole facet against an obstacle or the whole of two facets. The same on all
-/// ranks, which call it together.
+/// Whether a segment is a whole facet against an obstacle or the whole of two facets.
+template <int dim>
+[[nodiscard]] bool is_whole(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment)
+{
+  return segment.is_obstacle_facet() || matching_facets<dim>(mesh, segment);
+}
+
+/// Whether this holds for every segment. The same on all ranks, which call it together.
 template <int dim>
 [[nodiscard]] bool facets_match(const mesh::Mesh<dim>& mesh, std::span<const ContactSegment<dim>> segments);
 

@@ -154,6 +154,7 @@ void add_energy_error(Json& object, const LevelRecord& level)
       {"correction", bound.correction},
       {"contact", bound.contact},
       {"oscillation", bound.oscillation},
+      {"transfer", bound.transfer},
       {"cell_balance", bound.cell_balance},
       {"gap_remainder", bound.gap_remainder},
       {"threshold_remainder", bound.threshold_remainder}};

@@ -1,0 +1,292 @@
+#include "tribound/certify/energy/kept_apart.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "tribound/base/dense_factors.h"
+#include "tribound/certify/energy/control_point.h"
+#include "tribound/certify/energy/traction_fit.h"
+
+namespace tribound::certify
+{
+
+namespace
+{
+
+using Matrix = Eigen::MatrixXd;
+
+/// The facets that move, with their segments.
+template <int dim>
+class MovedFacets
+{
+ public:
+  MovedFacets(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets, MovedSide side);
+
+  /// The coefficients by node of the first part of z.
+  [[nodiscard]] std::vector<double> nearest(std::span<const WantedContact> wanted,
+                                            std::span<const double> u) const;
+  /// q_j by node; 0 where no such direction is free.
+  [[nodiscard]] std::vector<double> directions() const;
+  /// Multiplies q_j by a_j.
+  void scale(std::span<const double> v, std::vector<double>& directions) const;
+  /// The degrees of freedom of the function with these coefficients by node.
+  [[nodiscard]] std::vector<double> values(std::span<const double> coefficients) const;
+
+ private:
+  /// The segments on one facet; all of them on the same side of it.
+  struct Facet
+  {
+    bool is_master;
+    std::vector<std::size_t> segments;
+  };
+
+  [[nodiscard]] std::vector<char> masters_move(MovedSide side) const;
+  [[nodiscard]] const contact::SegmentSide<dim>& side(const Facet& facet, std::size_t k) const
+  {
+    return facet.is_master ? *form_.segments()[k].master : form_.segments()[k].slave;
+  }
+  [[nodiscard]] std::span<const Index> nodes(const Facet& facet) const
+  {
+    const std::size_t k = facet.segments.front();
+    return facet.is_master ? facets_.master_nodes(k) : facets_.nodes(k);
+  }
+  /// The direction on the facet in which [z]^n grows on segment k.
+  [[nodiscard]] Point<dim> away(const Facet& facet, std::size_t k) const
+  {
+    return side(facet, k).sign * form_.segments()[k].normal;
+  }
+  [[nodiscard]] Matrix nearest_on(const Facet& facet, std::span<const WantedContact> wanted,
+                                  std::span<const double> u) const;
+  [[nodiscard]] double factor(const Facet& facet, std::span<const double> v, std::span<const double> q) const;
+
+  const contact::NitscheForm<dim>& form_;
+  const ObstacleFacets<dim>& facets_;
+  std::map<std::size_t, Facet> moved_;  ///< by the number of the facet
+};
+
+template <int dim>
+MovedFacets<dim>::MovedFacets(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+                              MovedSide side)
+    : form_(form), facets_(facets)
+{
+  const std::vector<char> masters_move = this->masters_move(side);
+  for (std::size_t k = 0; k < facets.size(); ++k)
+  {
+    if (facets.matches(k)) continue;
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    const bool is_master = masters_move[segment.pair] != 0;
+    Facet& facet = moved_[is_master ? segment.master->number : segment.slave.number];
+    facet.is_master = is_master;
+    facet.segments.push_back(k);
+  }
+}
+
+/// By pair. The weights of the sides in {sigma} are inverse to modulus / diameter.
+template <int dim>
+std::vector<char> MovedFacets<dim>::masters_move(MovedSide side) const
+{
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
+  const auto diameter = [&](const contact::SegmentSide<dim>& of)
+  { return mesh::facet_geometry(mesh, of.facet.cell, of.facet.local).diameter; };
+  std::vector<double> costs(form_.problem().pairs().size(),
+                            0.0);  // mean logarithms of those of masters / slaves
+  for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form_.segments()[k];
+    if (facets_.matches(k)) continue;
+    const double of_slave = segment.slave.stress_direction.norm();
+    costs[segment.pair] +=
+        segment.measure * (std::log(of_slave / (1 - of_slave)) +
+                           2 * std::log(diameter(*segment.master) / diameter(segment.slave)));
+  }
+  mesh.ranks().sum(std::span(costs));
+  std::vector<char> result(costs.size());
+  for (std::size_t i = 0; i < costs.size(); ++i) result[i] = (costs[i] < 0) == (side == MovedSide::preferred);
+  return result;
+}
+
+/// Coefficients [j, component] of the polynomial on a facet nearest to what z should be there. What is not
+/// covered, or hardly, gets a small weight with the value 0.
+template <int dim>
+Matrix MovedFacets<dim>::nearest_on(const Facet& facet, std::span<const WantedContact> wanted,
+                                    std::span<const double> u) const
+{
+  constexpr double small = 1e-2;
+  const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
+  const int degree = form_.space().degree();
+  const Matrix on_segment = bernstein_at<dim>(degree, rule.points);
+  const Eigen::Index n = on_segment.cols();
+  Matrix gram = Matrix::Zero(n, n);
+  Matrix moments = Matrix::Zero(n, dim);
+  const auto add = [&](const Matrix& basis, double det)
+  {
+    for (int q = 0; q < rule.size(); ++q)
+      gram += det * rule.weights[q] * basis.row(q).transpose() * basis.row(q);
+  };
+  const auto& part = side(facet, facet.segments.front()).part;
+  add(on_segment,
+      small * form_.segments()[facet.segments.front()].det() / (part ? fem::fraction<dim - 1>(*part) : 1.0));
+  for (const std::size_t k : facet.segments)
+  {
+    const contact::ContactSegment<dim>& segment = form_.segments()[k];
+    std::vector<Point<dim - 1>> points;
+    for (const Point<dim - 1>& s : rule.points) points.push_back(side(facet, k).on_facet(s));
+    const Matrix on_facet = bernstein_at<dim>(degree, points);
+    add(on_facet, segment.det());
+    const std::vector<Point<dim>> jump = facets_.coefficients(k, u);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      Point<dim> c = Point<dim>::Zero();
+      double gap = 0;
+      for (Eigen::Index j = 0; j < n; ++j)
+      {
+        c += on_segment(q, j) * jump[j];
+        gap += on_segment(q, j) * facets_.gap(k)[j];
+      }
+      const double along = c.dot(segment.normal);
+      Point<dim> target = Point<dim>::Zero();
+      if (wanted[k].closed) target += (along - gap) * segment.normal;
+      if (wanted[k].sticks) target += c - along * segment.normal;
+      moments += side(facet, k).sign * segment.det() * rule.weights[q] * on_facet.row(q).transpose() *
+                 target.transpose();
+    }
+  }
+  return CholeskyFactors(gram).solve(moments);
+}
+
+template <int dim>
+std::vector<double> MovedFacets<dim>::nearest(std::span<const WantedContact> wanted,
+                                              std::span<const double> u) const
+{
+  struct Mean
+  {
+    Point<dim> sum = Point<dim>::Zero();
+    int n = 0;
+  };
+  std::map<Index, Mean> means;
+  for (const auto& [number, facet] : moved_)
+  {
+    if (std::ranges::none_of(facet.segments,
+                             [&](std::size_t k) { return wanted[k].closed || wanted[k].sticks; }))
+      continue;
+    const Matrix coefficients = nearest_on(facet, wanted, u);
+    for (std::size_t j = 0; j < nodes(facet).size(); ++j)
+    {
+      Mean& mean = means[nodes(facet)[j]];
+      mean.sum += coefficients.row(static_cast<Eigen::Index>(j)).transpose();
+      ++mean.n;
+    }
+  }
+  std::vector<double> result(form_.space().n_dofs(), 0.0);
+  for (const auto& [node, mean] : means)
+    for (int a = 0; a < dim; ++a)
+      if (const Index dof = dim * node + a; form_.constraints().fixed[dof] == 0)
+        result[dof] = mean.sum[a] / mean.n;
+  form_.space().update(std::span(result));
+  return result;
+}
+
+template <int dim>
+std::vector<double> MovedFacets<dim>::directions() const
+{
+  constexpr double same = 1e-12;
+  std::map<Index, std::vector<ControlCondition<dim>>> conditions;  // on -q_j
+  for (const auto& [number, facet] : moved_)
+    for (const std::size_t k : facet.segments)
+      for (const Index node : nodes(facet))
+      {
+        std::vector<ControlCondition<dim>>& known = conditions[node];
+        const Point<dim> n = away(facet, k);
+        if (std::ranges::none_of(known, [&](const auto& other) { return (other.normal - n).norm() <= same; }))
+          known.push_back({.normal = n, .gap = -1});
+      }
+  std::vector<double> result(form_.space().n_dofs(), 0.0);
+  for (const auto& [node, of_node] : conditions)
+  {
+    std::array<bool, dim> fixed;
+    for (int a = 0; a < dim; ++a) fixed[a] = form_.constraints().fixed[dim * node + a] != 0;
+    const Point<dim> q = -moved<dim>(Point<dim>::Zero(), fixed, of_node);
+    if (std::ranges::all_of(of_node, [&](const auto& condition) { return q.dot(condition.normal) > 0; }))
+      std::ranges::copy(q, &result[dim * node]);
+  }
+  form_.space().update(std::span(result));
+  return result;
+}
+
+/// The smallest a such that v - a q, both as degrees of freedom, keeps the bodies apart on this facet.
+template <int dim>
+double MovedFacets<dim>::factor(const Facet& facet, std::span<const double> v,
+                                std::span<const double> q) const
+{
+  constexpr double least = 1e-6;  // of a direction that helps
+  double result = 0;
+  for (const std::size_t k : facet.segments)
+  {
+    const std::vector<Point<dim>> jump = facets_.coefficients(k, v);
+    const std::vector<Point<dim>> of_q = facet.is_master ? facets_.on_master(k, q) : facets_.on_slave(k, q);
+    for (std::size_t j = 0; j < jump.size(); ++j)
+    {
+      const double excess = form_.segments()[k].normal.dot(jump[j]) - facets_.gap(k)[j];
+      if (excess > 0) result = std::max(result, excess / std::max(least, away(facet, k).dot(of_q[j])));
+    }
+  }
+  return result;
+}
+
+template <int dim>
+void MovedFacets<dim>::scale(std::span<const double> v, std::vector<double>& directions) const
+{
+  const std::vector<double> q = values(directions);
+  std::map<Index, double> factors;
+  for (const auto& [number, facet] : moved_)
+  {
+    const double a = factor(facet, v, q);
+    for (const Index node : nodes(facet)) factors[node] = std::max(factors[node], a);
+  }
+  for (const auto& [node, a] : factors)
+    for (int c = 0; c < dim; ++c) directions[dim * node + c] *= a;
+  form_.space().update(std::span(directions));
+}
+
+template <int dim>
+std::vector<double> MovedFacets<dim>::values(std::span<const double> coefficients) const
+{
+  std::vector<double> result(form_.space().n_dofs(), 0.0);
+  for (const auto& [number, facet] : moved_)
+  {
+    const std::vector<Point<dim>> on_facet = facets_.values(nodes(facet), coefficients);
+    for (std::size_t i = 0; i < on_facet.size(); ++i)
+      std::ranges::copy(on_facet[i], &result[dim * nodes(facet)[i]]);
+  }
+  form_.space().update(std::span(result));
+  return result;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<double> kept_apart(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
+                               MovedSide side, std::span<const WantedContact> wanted,
+                               std::span<const double> u)
+{
+  const MovedFacets<dim> moved(form, facets, side);
+  std::vector<double> v(u.begin(), u.end());
+  const auto subtract = [&](const std::vector<double>& z)
+  {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] -= z[i];
+  };
+  subtract(moved.values(moved.nearest(wanted, u)));
+  std::vector<double> away = moved.directions();
+  moved.scale(v, away);
+  subtract(moved.values(away));
+  return v;
+}
+
+template std::vector<double> kept_apart(const contact::NitscheForm<2>&, const ObstacleFacets<2>&, MovedSide,
+                                        std::span<const WantedContact>, std::span<const double>);
+template std::vector<double> kept_apart(const contact::NitscheForm<3>&, const ObstacleFacets<3>&, MovedSide,
+                                        std::span<const WantedContact>, std::span<const double>);
+
+}  // namespace tribound::certify
