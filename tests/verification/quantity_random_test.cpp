@@ -57,7 +57,7 @@ template <int dim>
 void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
 {
   const bool is_cut = seed % 2 != 0;
-  RandomCase<dim> block_of{std::mt19937(seed), is_on_another, dim == 3 || !is_cut};
+  RandomCase<dim> block_of{std::mt19937(seed), is_on_another, !is_cut};
   const ProblemData<dim> data = block_of.data();
   DiscreteProblem<dim> c(block_of.mesh(), data, {.degree = p, .newton = {.tolerance = 1e-11}});
   const int refinements = dim == 2 ? 2 : 1;
@@ -80,8 +80,9 @@ void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
   for (const std::vector<double>& u : iterates)
   {
     // As in runs, with facets cut to make bodies match and where the state changes; and on the mesh itself.
-    const EnergyBound bound =
-        is_cut ? adapt::energy_bound<dim>(c.form, c.method, u, asked.quantities) : estimator(u);
+    const EnergyBound bound = is_cut && (seed % 4 == 1 || !estimator.reason().empty())
+                                  ? adapt::energy_bound<dim>(c.form, c.method, u, asked.quantities)
+                                  : estimator(u);
     ASSERT_EQ(bound.reason, "");
     for (std::size_t i = 0; i < asked.values.size(); ++i)
     {

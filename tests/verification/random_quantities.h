@@ -63,7 +63,7 @@ struct RandomCase
       data.boundaries.push_back(obstacle<dim>("bottom", law, gap));
       return data;
     }
-    const bool is_tied = happens(3);
+    const bool is_tied = happens(3) && (dim == 2 || matches);
     data.pairs = {pair<dim>("bottom", "top_below", is_tied ? problem::ContactLaw(problem::Tied()) : law)};
     if (!is_tied) data.pairs[0].contact.gap = gap;
     data.boundaries.push_back(clamped<dim>("bottom_below"));
