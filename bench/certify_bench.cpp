@@ -172,7 +172,8 @@ void transfer(benchmark::State& state)
   const certify::ContactTerms<dim> terms(b.form, certify::ContactRule::resolved);
   const auto field = [](const Point<dim>&) -> Tensor<dim> { return Tensor<dim>::Identity(); };
   for (auto _ : state)
-    for (const auto& [cell, transfers] : certify::facet_transfers<dim>(b.form, terms, stress.tractions))
+    for (const auto& [cell, transfers] :
+         certify::facet_transfers<dim>(b.form, terms, stress.tractions.running()))
       for (const certify::FacetTransfer<dim>& of_facet : transfers)
         for (const auto& pieces : of_facet.groups)
         {

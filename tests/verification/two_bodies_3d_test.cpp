@@ -137,7 +137,7 @@ certify::Estimate with_closed_form(const contact::NitscheForm<3>& form, const ce
   double mor = 0;
   double eta = 0;
   for (certify::BoundComponents& cell : estimate.cells) cell.mor = 0;
-  for (const auto& [cell, transfers] : certify::facet_transfers<3>(form, terms, stress.tractions))
+  for (const auto& [cell, transfers] : certify::facet_transfers<3>(form, terms, stress.tractions.running()))
     for (const certify::FacetTransfer<3>& transfer : transfers)
       for (const auto& pieces : transfer.groups)
         estimate.cells[cell].mor +=
