@@ -189,11 +189,13 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
       throw;
     }
   };
+  auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   if (config.history)
   {
     auto path = std::make_unique<adapt::LoadPath<dim>>(
         problem, config.method, adapt::PathOptions{.tolerance = config.adapt.tolerance}, std::move(mesh),
         &stop, std::move(whole));
+    path->ask_for(config.adapt.bars, std::move(quantities));
     const adapt::Discretisation<dim>& first = path->prepare(config.history->program.targets.front());
     return report_from(first,
                        [&](RunReport<dim>& report)
@@ -202,7 +204,6 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
                                                    restart ? first.grid : nullptr, restart, report);
                        });
   }
-  auto quantities = case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
   const std::unique_ptr<adapt::Levels<dim>> levels =
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   levels->ask_for(config.adapt.bars, std::move(quantities));

@@ -23,6 +23,7 @@
 #include "tribound/certify/bound/korn.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/obstacle_facets.h"
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/share_out.h"
@@ -173,7 +174,7 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const 
       {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
       {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
       {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
-  EXPECT_EQ(certify::why_no_energy_bound(form), "");
+  EXPECT_EQ(certify::obstacles_unfit(form), "");
   const certify::EnergyBound bound =
       certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct}, quantities)(u);
   EXPECT_EQ(bound.reason, "");

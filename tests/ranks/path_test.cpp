@@ -18,7 +18,7 @@ namespace tribound::test
 namespace
 {
 
-/// Energy, bound, forces and the integrals of damage, slip and dissipation at each step.
+/// Energy, bounds, forces and the integrals of damage, slip and dissipation at each step.
 template <int dim>
 std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, int degree,
                            std::shared_ptr<const mesh::Mesh<dim>> whole = nullptr)
@@ -28,15 +28,17 @@ std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, i
   method.stopping.criterion = adapt::Stopping::last_bounded;
   method.solver.method = algebra::LinearMethod::direct;
   adapt::LoadPath<dim> path(problem, method, {}, std::move(mesh), nullptr, std::move(whole));
+  path.ask_for({.levels = adapt::EnergyLevels::every});
   std::vector<double> numbers;
   const auto add = [&](const adapt::LoadStep<dim>& step)
   {
     const contact::NitscheForm<dim>& form = step.at->discrete.form;
     const InterfaceIntegrals sums = integrals<dim>(step);
     const auto contact = contact::contact_resultants<dim>(form, step.level.traction);
-    numbers.insert(numbers.end(), {sums.damage, sums.slipped, sums.dissipated, sums.stored,
-                                   step.level.norms.energy, step.level.norms.sigma,
-                                   step.level.estimate.total_sharp, contact.normal, contact.tangential});
+    numbers.insert(numbers.end(),
+                   {sums.damage, sums.slipped, sums.dissipated, sums.stored, step.level.norms.energy,
+                    step.level.norms.sigma, step.level.estimate.total_sharp, contact.normal,
+                    contact.tangential, step.level.energy.value().bound});
     for (const contact::CrackTip& tip : step.crack_tips)
       numbers.insert(numbers.end(), {tip.distance, tip.farthest, static_cast<double>(step.passes)});
     const auto boundaries = form.problem().boundaries();
@@ -45,6 +47,9 @@ std::vector<double> follow(mesh::Mesh<dim> mesh, const ProblemData<dim>& data, i
         numbers.insert(numbers.end(), {figures->effective_normal, figures->uplift, figures->cmod.value(),
                                        figures->csd.value(), figures->overturning.value_or(0)});
     EXPECT_NE(step.verdict.status, certify::RunStatus::not_certified);
+    const problem::Contact& first = *form.problem().contacts().front();
+    const bool is_bounded = !cone(first.law).is_bonded && !first.water;
+    EXPECT_EQ(step.level.energy.value().reason.empty(), is_bounded) << step.level.energy->reason;
   };
   for (const double t : path_of_t) EXPECT_EQ(path.advance(t, add), "");
   return numbers;

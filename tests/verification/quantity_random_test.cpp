@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "support/earlier_slip.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/certify/energy/interval_comparison.h"
@@ -52,7 +53,8 @@ struct Widths
   }
 };
 
-/// Every interval of every iterate contains the value of a much richer solution.
+/// Every interval of every iterate contains the value of a much richer solution. A third are load steps after
+/// earlier slip.
 template <int dim>
 void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
 {
@@ -60,9 +62,12 @@ void try_random_block(unsigned seed, int p, bool is_on_another, Widths& widths)
   RandomCase<dim> block_of{std::mt19937(seed), is_on_another, !is_cut};
   const ProblemData<dim> data = block_of.data();
   DiscreteProblem<dim> c(block_of.mesh(), data, {.degree = p, .newton = {.tolerance = 1e-11}});
+  const bool has_slipped = seed % 3 == 2;
+  if (has_slipped) set_random_slip<dim>(c.form, seed, dim == 2 || block_of.matches || !is_on_another);
   const int refinements = dim == 2 ? 2 : 1;
-  const DiscreteProblem<dim> rich(std::move(mesh::refine_uniformly(c.mesh, refinements).mesh), data,
-                                  {.degree = std::min(p + 1, 4), .newton = {.tolerance = 1e-11}});
+  DiscreteProblem<dim> rich(std::move(mesh::refine_uniformly(c.mesh, refinements).mesh), data,
+                            {.degree = std::min(p + 1, 4), .newton = {.tolerance = 1e-11}});
+  if (has_slipped) remember_as<dim>(c.form, rich.form);
   const solve::NewtonResult<dim> truth = rich.solve();
   const Asked<dim> asked(block_of.is_held_above, is_on_another);
   const EnergyEstimator<dim> estimator(c.form, c.method.solver, asked.quantities);

@@ -232,6 +232,15 @@ void expect_statics()
       resting_block<dim>(Coulomb(0.3), {loaded<dim>("right", formula("0.03*y^2"), 0.0)});
   const Quantity<dim> factor{.name = "sliding", .kind = QuantityKind::safety_factor, .boundary = "bottom"};
   expect_known(interval_from_statics<dim>(pushed, factor), 0.3 * 0.8 / 0.01);
+  for (const problem::ContactLaw& law :
+       {problem::ContactLaw(Coulomb(0.3)),
+        {problem::JointLaw({.tension = {0.05, 0.003}, .cohesion = 0.1, .coefficient = 0.3})}})
+  {
+    ProblemData<dim> lifted = resting_block<dim>(law, {loaded<dim>("right", formula("0.03*y^2"), 0.0)});
+    for (problem::BoundaryCondition<dim>& boundary : lifted.boundaries)
+      if (boundary.contact) boundary.contact->water.emplace(formula("0.1 + 0.05*x"));
+    expect_known(interval_from_statics<dim>(lifted, factor), 0.3 * (0.8 - 0.3) / 0.01);
+  }
   Quantity<dim> moment{.name = "tilting", .kind = QuantityKind::contact_moment, .boundary = "bottom"};
   moment.point = Point<dim>::Unit(0);  // below the centre of gravity: the push alone turns, by y^3
   moment.direction = dim == 2 ? std::nullopt : std::optional(Point<dim>(Point<dim>::Unit(dim - 1)));

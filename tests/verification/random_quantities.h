@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "support/meshes.h"
+#include "support/random_cases.h"
 #include "support/two_blocks.h"
 #include "tribound/fem/evaluation.h"
 #include "verification/quantities.h"
@@ -176,12 +176,5 @@ struct Asked
         });
   }
 };
-
-/// n, multiplied by TRIBOUND_RANDOM_CASES if that is set.
-inline unsigned n_cases(unsigned n)
-{
-  const char* const factor = std::getenv("TRIBOUND_RANDOM_CASES");
-  return factor == nullptr ? n : n * static_cast<unsigned>(std::atoi(factor));
-}
 
 }  // namespace tribound::test

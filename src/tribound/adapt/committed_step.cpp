@@ -41,6 +41,7 @@ void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
   position_.largest_sigma = std::max(position_.largest_sigma, level.norms.sigma);
   step->largest_sigma = position_.largest_sigma;
   step->verdict = options_.certifies ? judge(level) : certify::Verdict{certify::RunStatus::uncertified, {}};
+  if (options_.certifies && has_error_bars_) bound_energy(*step);
   for (std::size_t i = 0; i < position_.tips.size(); ++i) position_.tips[i] = step->crack_tips[i].distance;
 
   position_.history = history_after(*step);
@@ -49,6 +50,14 @@ void LoadPath<dim>::commit(std::shared_ptr<LoadStep<dim>> step)
   begin_ = Clock::now();
   if (last()) position_.before_last = {last()->t, last()->level.u};
   position_.last = std::move(step);
+}
+
+template <int dim>
+void LoadPath<dim>::bound_energy(LoadStep<dim>& step) const
+{
+  CertifiedLevel<dim>& level = step.level;
+  const ScopedTimer timer(level.certify_seconds, level.certify_cpu);
+  level.energy = error_bars<dim>(step.at->discrete.form, method_, level, step.verdict, quantities_);
 }
 
 template <int dim>
@@ -90,6 +99,8 @@ template std::vector<double> forces_on(const contact::NitscheForm<2>&, std::span
                                        std::span<const double>);
 template std::vector<double> forces_on(const contact::NitscheForm<3>&, std::span<const double>,
                                        std::span<const double>);
+template void LoadPath<2>::bound_energy(LoadStep<2>&) const;
+template void LoadPath<3>::bound_energy(LoadStep<3>&) const;
 template void LoadPath<2>::commit(std::shared_ptr<LoadStep<2>>);
 template void LoadPath<3>::commit(std::shared_ptr<LoadStep<3>>);
 template std::shared_ptr<const contact::ContactHistory<2>> LoadPath<2>::history_after(

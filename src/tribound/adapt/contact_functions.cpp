@@ -4,7 +4,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
+#include "tribound/contact/nitsche/form_history.h"
 #include "tribound/contact/nitsche/simplex_map.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/polynomials.h"
@@ -193,15 +195,7 @@ std::shared_ptr<const contact::ContactHistory<dim>> carried_history(
   states.reserve(to.n_contact_points());
   for (std::size_t i = 0; i < carried.size(); i += n)
     states.push_back({carried[i], carried[i + 1], Point<dim>(&carried[i + 2])});
-  const auto cut = [&](std::size_t point, problem::InterfaceState<dim> state)
-  {
-    const Point<dim>& n = to.contact_points()[point].normal;
-    state = problem::admissible<dim>(to.segments()[point / to.n_segment_points()].contact->law, state);
-    state.slip -= state.slip.dot(n) * n;  // where N varies, polynomials leave the tangent plane
-    return state;
-  };
-  return std::make_shared<const contact::ContactHistory<dim>>(std::move(states), to.facet_rule(),
-                                                              to.space().degree() + 2, cut);
+  return contact::history_from_values<dim>(to, std::move(states));
 }
 
 template <int dim>

@@ -11,6 +11,7 @@
 #include "tribound/adapt/finer_contact.h"
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
+#include "tribound/certify/energy/obstacle_facets.h"
 
 namespace tribound::adapt
 {
@@ -81,8 +82,8 @@ certify::EnergyBound bound_or_reason(const contact::NitscheForm<dim>& form, cons
   return bound;
 }
 
-/// 2D: the bound on a mesh with cells cut until facets match, which is the sharper one; a reason where there
-/// is none.
+/// 2D: the bound on a mesh with cells cut so that facets match, which is the sharper one; a reason where
+/// there is none.
 template <int dim>
 certify::EnergyBound where_it_matches(const contact::NitscheForm<dim>& form, const Method& method,
                                       std::span<const double> u,
@@ -103,11 +104,25 @@ certify::EnergyBound energy_bound(const contact::NitscheForm<dim>& form, const M
                                   const std::vector<problem::Quantity<dim>>& quantities,
                                   std::optional<double> korn)
 {
+  if (const std::string unfit = certify::laws_unfit(form); !unfit.empty())
+    return certify::no_energy_bound<dim>(form, u, quantities, unfit);
   certify::EnergyBound bound = attempt(form.space().mesh().ranks(),
                                        [&] { return where_it_matches(form, method, u, quantities, korn); });
   if (!bound.reason.empty()) bound = bound_or_reason<dim>(form, method, u, quantities, korn);
   if (bound.quantities.size() == quantities.size()) return bound;
   return certify::no_energy_bound<dim>(form, u, quantities, bound.reason);
+}
+
+template <int dim>
+certify::EnergyBound error_bars(const contact::NitscheForm<dim>& form, const Method& method,
+                                const CertifiedLevel<dim>& level, const certify::Verdict& verdict,
+                                const std::vector<problem::Quantity<dim>>& quantities)
+{
+  if (!certify::is_bound(verdict.status))
+    return certify::no_energy_bound<dim>(form, level.u, quantities, "there is no bound of the residual");
+  const auto& constants = level.friedrichs;
+  return energy_bound<dim>(form, method, level.u, quantities,
+                           constants ? std::optional(constants->korn) : std::nullopt);
 }
 
 const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound, const std::string& name)
@@ -167,5 +182,11 @@ template certify::EnergyBound energy_bound(const contact::NitscheForm<2>&, const
 template certify::EnergyBound energy_bound(const contact::NitscheForm<3>&, const Method&,
                                            std::span<const double>, const std::vector<problem::Quantity<3>>&,
                                            std::optional<double>);
+template certify::EnergyBound error_bars(const contact::NitscheForm<2>&, const Method&,
+                                         const CertifiedLevel<2>&, const certify::Verdict&,
+                                         const std::vector<problem::Quantity<2>>&);
+template certify::EnergyBound error_bars(const contact::NitscheForm<3>&, const Method&,
+                                         const CertifiedLevel<3>&, const certify::Verdict&,
+                                         const std::vector<problem::Quantity<3>>&);
 
 }  // namespace tribound::adapt

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tribound/adapt/method.h"
+#include "tribound/adapt/level.h"
 #include "tribound/certify/energy/energy_bound.h"
 
 namespace tribound::adapt
@@ -41,6 +41,13 @@ template <int dim>
                                                 std::span<const double> u,
                                                 const std::vector<problem::Quantity<dim>>& quantities = {},
                                                 std::optional<double> korn = {});
+
+/// energy_bound() of a level with this verdict; a reason where it has no bound of the residual.
+template <int dim>
+[[nodiscard]] certify::EnergyBound error_bars(const contact::NitscheForm<dim>& form, const Method& method,
+                                              const CertifiedLevel<dim>& level,
+                                              const certify::Verdict& verdict,
+                                              const std::vector<problem::Quantity<dim>>& quantities);
 
 /// The interval of that name; null where there is none.
 [[nodiscard]] const certify::QuantityInterval* find_interval(const certify::EnergyBound& bound,

@@ -5,10 +5,11 @@
 #include <map>
 #include <utility>
 
+#include "tribound/adapt/contact_functions.h"
 #include "tribound/adapt/finer.h"
 #include "tribound/base/error.h"
 #include "tribound/certify/energy/admissible_displacement.h"
-#include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/obstacle_facets.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/fem/nested.h"
@@ -101,6 +102,18 @@ double contact_measure(const contact::NitscheForm<dim>& form)
   return form.space().mesh().ranks().sum(sum);
 }
 
+/// (w, w)_C, w the slip of earlier load steps. All ranks together.
+template <int dim>
+double square_of_slip(const contact::NitscheForm<dim>& form)
+{
+  double sum = 0;
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+    for (int q = 0; q < form.n_segment_points(); ++q)
+      sum += form.contact_points(k)[q].weight *
+             form.history()->uncut(k, form.facet_rule().points[q]).slip.squaredNorm();
+  return form.space().mesh().ranks().sum(sum);
+}
+
 /// u and the form on a finer mesh, as the same functions; null where Gamma_C would not be the same.
 template <int dim>
 std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form, std::span<const double> u,
@@ -116,11 +129,18 @@ std::unique_ptr<FinerContact<dim>> carried(const contact::NitscheForm<dim>& form
       contact::contact_segments<dim>(form.problem(), mesh, form.gamma0());
   contact::erase_slivers(mesh, segments);
   inherit<dim>(form, *result, segments);
-  result->form = std::make_unique<const contact::NitscheForm<dim>>(form.problem(), result->grid->space,
-                                                                   form.gamma0(), std::move(segments));
+  auto finer_form = std::make_unique<contact::NitscheForm<dim>>(form.problem(), result->grid->space,
+                                                                form.gamma0(), std::move(segments));
   constexpr double rounding = 1e-8;
   const double measure = contact_measure(form);
-  if (!(std::abs(contact_measure(*result->form) - measure) <= rounding * measure)) return nullptr;
+  if (!(std::abs(contact_measure(*finer_form) - measure) <= rounding * measure)) return nullptr;
+  if (form.history())
+  {
+    finer_form->set_history(carried_history<dim>(*form.history(), form, *finer_form));
+    const double slip = square_of_slip(form);
+    if (!(std::abs(square_of_slip(*finer_form) - slip) <= rounding * slip)) return nullptr;
+  }
+  result->form = std::move(finer_form);
   require_carried<dim>(form, u, *result);
   return result;
 }
@@ -171,18 +191,23 @@ void require_carried(const contact::NitscheForm<dim>& form, std::span<const doub
 namespace
 {
 
-/// Whether the cuts leave a facet that is so narrow that the bound is better without them.
-bool leave_slivers(std::span<const mesh::FacetCuts> cuts)
+/// Without the cuts that would leave facets so narrow that the bound is better without them.
+std::vector<mesh::FacetCuts> without_slivers(std::vector<mesh::FacetCuts> cuts)
 {
   constexpr double narrow = 0.04;  // of a facet
-  return std::ranges::any_of(cuts,
-                             [](const mesh::FacetCuts& facet)
-                             {
-                               double last = 0;
-                               for (const double at : facet.at)
-                                 if (at - std::exchange(last, at) < narrow) return true;
-                               return 1 - last < narrow;
-                             });
+  for (mesh::FacetCuts& facet : cuts)
+  {
+    double last = 0;
+    std::erase_if(facet.at,
+                  [&](double at)
+                  {
+                    const bool is_sliver = at - last < narrow || 1 - at < narrow;
+                    if (!is_sliver) last = at;
+                    return is_sliver;
+                  });
+  }
+  std::erase_if(cuts, [](const mesh::FacetCuts& facet) { return facet.at.empty(); });
+  return cuts;
 }
 
 template <int dim>
@@ -202,12 +227,14 @@ std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<d
   {
     const mesh::Mesh<2>& mesh = form.space().mesh();
     if (contact::facets_match(mesh, form.segments())) return nullptr;
-    const std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
-    if (mesh.ranks().any(leave_slivers(cuts)) && !mesh.ranks().any(any_is_tied(form.segments())))
-      return nullptr;
+    const bool all_have_to_match = mesh.ranks().any(any_is_tied(form.segments()));
+    std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
+    if (!all_have_to_match) cuts = without_slivers(std::move(cuts));
+    if (!mesh.ranks().any(!cuts.empty())) return nullptr;
     auto result =
         carried<2>(form, u, finer_mesh<2>(form.space(), {u}, {}, {.cuts = cuts, .move = mesh::Move::never}));
-    if (result && contact::facets_match(result->grid->mesh, result->form->segments())) return result;
+    if (!all_have_to_match || (result && contact::facets_match(result->grid->mesh, result->form->segments())))
+      return result;
   }
   return nullptr;
 }
@@ -217,8 +244,9 @@ std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>
                                                  std::span<const double> u)
 {
   constexpr int times = dim == 2 ? 6 : 3;
-  if (!certify::why_no_energy_bound(form).empty()) return nullptr;
+  if (!certify::obstacles_unfit(form).empty()) return nullptr;
   const mesh::Mesh<dim>& mesh = form.space().mesh();
+  if (dim == 3 && form.history() && !contact::facets_match(mesh, form.segments())) return nullptr;
   std::vector<Index> marked;
   for (const std::size_t k : certify::facets_in_transition<dim>(form, form.traction(u)))
   {

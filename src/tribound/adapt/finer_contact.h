@@ -31,17 +31,19 @@ void require_carried(const contact::NitscheForm<dim>& form, std::span<const doub
                      const FinerContact<dim>& finer);
 
 /// 2D: the solution on a mesh whose cells in contact are cut in fans where segments end, so that the facets
-/// of the bodies match. Null where they match already, where rounding prevents it, in 3D, and where facets
-/// narrower than 0.04 times the old ones would come, unless bodies are tied, which have no bound otherwise.
-/// All ranks call it together. Throws InputError where the result is no valid mesh, and as require_carried().
+/// of the bodies match, except where facets narrower than 0.04 times the old ones would come. If bodies are
+/// tied, which have no bound otherwise, there are no exceptions. Null where nothing is to be cut, where
+/// rounding prevents it, and in 3D. All ranks call it together. Throws InputError where the result is no
+/// valid mesh, and as require_carried().
 template <int dim>
 [[nodiscard]] std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<dim>& form,
                                                                   std::span<const double> u);
 
 /// Polynomials cannot satisfy complementarity on a facet where the state changes, the less so the higher
 /// their degree. There the cells are bisected until edges are an eighth in 2D, halved in 3D. Null where the
-/// state changes on no facet of any rank, or where the form has no bound of the error in the energy norm. All
-/// ranks call it together. Throws as require_carried().
+/// state changes on no facet of any rank, where the form has no bound of the error in the energy norm, and
+/// between 3D meshes that do not match after earlier load steps, since their segments do not nest. All ranks
+/// call it together. Throws as require_carried().
 template <int dim>
 [[nodiscard]] std::unique_ptr<FinerContact<dim>> finer_contact(const contact::NitscheForm<dim>& form,
                                                                std::span<const double> u);

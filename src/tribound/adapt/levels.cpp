@@ -255,15 +255,13 @@ bool Levels<dim>::restore_stress()
 template <int dim>
 certify::EnergyBound Levels<dim>::energy_or_reason()
 {
-  const auto without = [&](const char* reason)
-  { return certify::no_energy_bound<dim>(current_->form, level_.u, quantities_, reason); };
-  if (!certify::is_bound(verdict_.status)) return without("there is no bound of the residual");
-  if (interrupted()) return without("interrupted");
+  const bool is_bound = certify::is_bound(verdict_.status);
+  if (is_bound && interrupted())
+    return certify::no_energy_bound<dim>(current_->form, level_.u, quantities_, "interrupted");
   const ScopedTimer timer(level_.certify_seconds, level_.certify_cpu);
-  if (level_.converged) level_.equilibrium.reset();  // the factors, for finish(), take most of the memory
-  const auto& constants = level_.friedrichs;
-  return energy_bound<dim>(current_->form, method_, level_.u, quantities_,
-                           constants ? std::optional(constants->korn) : std::nullopt);
+  if (is_bound && level_.converged)
+    level_.equilibrium.reset();  // factors, for finish(), take most of the memory
+  return error_bars<dim>(current_->form, method_, level_, verdict_, quantities_);
 }
 
 template <int dim>

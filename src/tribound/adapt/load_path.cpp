@@ -75,6 +75,8 @@ LoadPath<dim>::LoadPath(const LoadPath& coarser, mesh::Mesh<dim> mesh)
 {
   friedrichs_ = coarser.friedrichs_;
   is_well_posed_ = true;
+  has_error_bars_ = coarser.has_error_bars_;
+  quantities_ = coarser.quantities_;
 }
 
 template <int dim>

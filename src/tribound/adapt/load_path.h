@@ -10,9 +10,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tribound/adapt/bordered.h"
+#include "tribound/adapt/error_bars.h"
 #include "tribound/adapt/level.h"
 #include "tribound/adapt/path_measure.h"
 #include "tribound/adapt/saved_path.h"
@@ -119,6 +121,15 @@ class LoadPath
   /// The same path on a refinement of the mesh of `coarser`, where the problem is known to be well posed.
   LoadPath(const LoadPath& coarser, mesh::Mesh<dim> mesh);
 
+  /// Error bars of every step besides the bound of the residual: the distance from the exact solution of that
+  /// step after the computed ones before it. The requirements and the choice of levels in `bars` do not
+  /// apply, only whether there are any.
+  void ask_for(const ErrorBars& bars, std::vector<problem::Quantity<dim>> quantities = {})
+  {
+    has_error_bars_ = bars.levels != EnergyLevels::off;
+    quantities_ = std::move(quantities);
+  }
+
   /// The part of the first step, at t, that precedes any solution. Returns its discretisation; throws on
   /// invalid input as that step would.
   const Discretisation<dim>& prepare(double t);
@@ -213,6 +224,7 @@ class LoadPath
   [[nodiscard]] Method method_of_step() const;
   [[nodiscard]] certify::Verdict judge(const CertifiedLevel<dim>& level) const;
   void commit(std::shared_ptr<LoadStep<dim>> step);
+  void bound_energy(LoadStep<dim>& step) const;
   /// Computes loads, reactions and their work.
   void account(LoadStep<dim>& step);
   /// The history for the next steps.
@@ -229,6 +241,8 @@ class LoadPath
   const std::atomic<bool>* stop_;
   std::shared_ptr<const mesh::Mesh<dim>> whole_;  ///< until the first step
   bool is_well_posed_ = false;
+  bool has_error_bars_ = false;
+  std::vector<problem::Quantity<dim>> quantities_;
   std::shared_ptr<DiscreteAtTime<dim>> prepared_;  ///< the first step
   Position position_;
   std::shared_ptr<Bordered<dim>> bordered_;  ///< since the first step under control

@@ -312,6 +312,7 @@ auto Follower<dim>::summit_with(const Stage<dim>& stage, double size, double end
     -> std::optional<Summit>
 {
   LoadPath<dim> beside = path_;
+  beside.ask_for({});
   beside.go_back(from);
   Summit summit{from.last->t, 0, from};
   Control<dim> control = this->control(stage, size);

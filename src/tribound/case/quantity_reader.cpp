@@ -136,14 +136,11 @@ void check_error_bars(const TableReader& root, Config& config)
   const Entry* given = certify ? find(std::get<Node::Table>(certify->value), "energy") : nullptr;
   if (config.history)
   {
-    if (is_steering || !config.quantities.empty())
-      throw InputError(
-          is_steering ? root.find("adapt")->where : config.quantities.front().where,
-          "asks for the error in the energy norm",
-          "of load steps it is not bounded: drop [[quantity]], adapt.goal, adapt.energy_tolerance and "
-          "adapt.measure");
-    bars.levels = adapt::EnergyLevels::off;
-    return;
+    if (is_steering)
+      throw InputError(root.find("adapt")->where,
+                       "steers the meshes by the error in the energy norm, and there are load steps",
+                       "the bound of the residual refines meshes of load steps: drop adapt.goal, "
+                       "adapt.energy_tolerance and adapt.measure");
   }
   if (given && is_steering && !bars.on_every_level())
     throw InputError(

@@ -8,11 +8,9 @@ namespace tribound::problem
 namespace
 {
 
-bool has_coulomb_friction(const Contact* contact)
+bool has_coefficient(const Contact* contact)
 {
-  if (contact == nullptr) return false;
-  const FrictionCone friction = cone(contact->law);
-  return friction.strength == nullptr && friction.coefficient > 0;
+  return contact != nullptr && cone(contact->law).coefficient > 0;
 }
 
 }  // namespace
@@ -34,11 +32,10 @@ int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
         quantity.where, fmt::format("boundary \"{}\" touches nothing", quantity.boundary),
         "there is no contact on it: name a boundary with contact, of a pair the slave, or none for all "
         "of them together");
-  if (is_safety && !has_coulomb_friction(problem.contact(tag)))
+  if (is_safety && !has_coefficient(problem.contact(tag)))
     throw InputError(
         quantity.where, fmt::format("boundary \"{}\" has no Coulomb friction", quantity.boundary),
-        "a boundary with contact = { friction = \"coulomb\", coefficient = ... }: a safety factor is "
-        "mu_F N / H");
+        "a boundary with contact or an interface that has a coefficient: a safety factor is mu_F N / H");
   return tag;
 }
 

@@ -21,8 +21,8 @@ enum class QuantityKind
   load_work,         ///< L(u) = (f, u) + (g_N, u)_N
   contact_force,     ///< integral of sigma(u) n . e over contact boundaries, which acts on the body
   contact_moment,    ///< moment of sigma(u) n about a point, in 3D about an axis e through it
-  safety_factor,     ///< mu_F N / H of a plane boundary with Coulomb's friction: N = -(integral of sigma^n),
-                     ///< H = |integral of sigma^t|
+  safety_factor,     ///< mu_F N / H of a plane boundary with Coulomb's friction, without any bond: H =
+                     ///< |integral of sigma^t|, N = -(integral of sigma^n + p_w), p_w of water in the joint
   mean_displacement  ///< mean of u . e over a boundary
 };
 
@@ -65,8 +65,8 @@ struct Quantity
 };
 
 /// The number of its boundary; -1 if it refers to all contact boundaries or to the whole. Throws InputError
-/// if there is no such boundary, no contact for a force or moment, or anything but Coulomb friction alone for
-/// a safety factor.
+/// if there is no such boundary, no contact for a force or moment, or no friction coefficient for a safety
+/// factor.
 template <int dim>
 [[nodiscard]] int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
                                   std::span<const std::string> boundary_names);

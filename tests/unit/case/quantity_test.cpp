@@ -94,14 +94,15 @@ TEST(QuantityReader, AGoalNeedsTheBoundOnEveryMesh)
   EXPECT_THAT(message(energy + "[adapt]\ngoal_tolerance = 0.1"), HasSubstr("without a goal"));
 }
 
-TEST(QuantityReader, LoadStepsHaveNone)
+TEST(QuantityReader, LoadStepsHaveThemButAreNotSteered)
 {
   const std::string steps = "[history]\nsteps = [1, 2]\n";
-  EXPECT_EQ(config(steps).adapt.bars.levels, adapt::EnergyLevels::off);
-  EXPECT_THAT(message("[[quantity]]\nkind = \"energy\"\n" + steps),
-              HasSubstr("of load steps it is not bounded"));
-  EXPECT_THAT(message("[adapt]\nmeasure = \"energy\"\n" + steps),
-              HasSubstr("of load steps it is not bounded"));
+  EXPECT_EQ(config(steps).adapt.bars.levels, adapt::EnergyLevels::last);
+  EXPECT_EQ(config("[[quantity]]\nkind = \"energy\"\n" + steps).quantities.size(), 1);
+  EXPECT_EQ(config("[certify]\nenergy = \"off\"\n" + steps).adapt.bars.levels, adapt::EnergyLevels::off);
+  for (const char* const adapt : {"measure = \"energy\"", "energy_tolerance = 0.1"})
+    EXPECT_THAT(message("[adapt]\n" + std::string(adapt) + "\n" + steps),
+                HasSubstr("the bound of the residual refines meshes of load steps"));
 }
 
 TEST(QuantityReader, SaysWhatIsWrong)

@@ -110,8 +110,10 @@ class ControlPoints
       const Index master = at.places.front().master;
       std::array<bool, dim> fixed;
       for (int a = 0; a < dim; ++a) fixed[a] = is_fixed(node, a) && (master < 0 || is_fixed(master, a));
-      const Point<dim> from_opposite = at.position - at.places.front().opposite;
+      const Point<dim> before = slip_before(at, transition_is_closed);
+      const Point<dim> from_opposite = at.position - at.places.front().opposite - before;
       std::vector<ControlCondition<dim>> conditions = this->conditions(at, transition_is_closed);
+      for (ControlCondition<dim>& condition : conditions) condition.gap -= condition.normal.dot(before);
       if (beside_[dim * node] != 0)  // it is kept apart from another mesh as well: no equalities
         for (ControlCondition<dim>& condition : conditions) condition.closed = condition.sticks = false;
       const Point<dim> step = moved<dim>(from_opposite, fixed, conditions) - from_opposite;
@@ -149,6 +151,19 @@ class ControlPoints
   [[nodiscard]] bool is_fixed(Index node, int a) const
   {
     return form_.constraints().fixed[dim * node + a] != 0;
+  }
+  /// The mean of earlier slips on the facets that stick.
+  [[nodiscard]] Point<dim> slip_before(const ControlPoint& at, bool transition_is_closed) const
+  {
+    Point<dim> sum = Point<dim>::Zero();
+    int n = 0;
+    for (const Place& place : at.places)
+    {
+      if (!holds(states_[place.facet].sticks, transition_is_closed)) continue;
+      sum += facets_.slip_before(place.facet, place.coefficient);
+      ++n;
+    }
+    return n == 0 ? sum : sum / n;
   }
   /// Conditions on the distance from the opposite control point of the first facet. Facets with the same
   /// normal share one condition.

@@ -127,14 +127,28 @@ class SlipIntegral
 template <int dim>
 struct ContactGap<dim>::Tables
 {
+  /// For slips of the degree.
+  struct OfSlip
+  {
+    OfSlip(const contact::NitscheForm<dim>& form, int degree)
+        : at_points(bernstein_at<dim>(degree, form.facet_rule().points)),
+          raise(bernstein_raised<dim>(form.space().degree(), degree)),
+          integral(degree)
+    {
+    }
+
+    Matrix at_points;
+    Matrix raise;  ///< of thresholds
+    SlipIntegral<dim> integral;
+  };
+
   explicit Tables(const contact::NitscheForm<dim>& form)
-      : at_points(bernstein_at<dim>(form.space().degree(), form.facet_rule().points)),
-        slip(form.space().degree())
+      : plain(form, form.space().degree()), after_slip(form, form.space().degree() + 2)
   {
   }
 
-  Matrix at_points;
-  SlipIntegral<dim> slip;
+  OfSlip plain;
+  OfSlip after_slip;
 };
 
 template <int dim>
@@ -151,28 +165,28 @@ double ContactGap<dim>::operator()(std::size_t k, const AdmissibleTraction<dim>&
                                    std::span<const double> v) const
 {
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
-  const Matrix& at_points = tables_->at_points;
+  const Matrix& at_points = tables_->plain.at_points;
   const Eigen::Index n = at_points.cols();
   const Point<dim>& normal = form_.segments()[k].normal;
   const std::vector<Point<dim>> coefficients = facets_.coefficients(k, v);
   Eigen::VectorXd normal_gap(n);
   Eigen::VectorXd thresholds(n);
-  typename SlipIntegral<dim>::Columns tangential(dim, n);
   for (Eigen::Index j = 0; j < n; ++j)
   {
-    const double v_n = coefficients[j].dot(normal);
-    normal_gap[j] = v_n - facets_.gap(k)[j];
-    tangential.col(j) = coefficients[j] - v_n * normal;
+    normal_gap[j] = coefficients[j].dot(normal) - facets_.gap(k)[j];
     thresholds[j] = t.thresholds[k * n + j];
   }
+  const typename Tables::OfSlip& of_slip = facets_.has_slipped(k) ? tables_->after_slip : tables_->plain;
+  const std::vector<Point<dim>> slip = facets_.slip(k, v);
+  const Eigen::Map<const typename SlipIntegral<dim>::Columns> slips(slip[0].data(), dim, std::ssize(slip));
   double sum = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
     const Point<dim>& t_h = t.at_points[k * rule.size() + q];
-    const Point<dim> v_t = tangential * at_points.row(q).transpose();
-    sum += rule.weights[q] * (t_h.dot(normal) * at_points.row(q).dot(normal_gap) + t_h.dot(v_t));
+    const Point<dim> slip_there = slips * of_slip.at_points.row(q).transpose();
+    sum += rule.weights[q] * (t_h.dot(normal) * at_points.row(q).dot(normal_gap) + t_h.dot(slip_there));
   }
-  if (thresholds.maxCoeff() > 0) sum += tables_->slip(thresholds, tangential);
+  if (thresholds.maxCoeff() > 0) sum += of_slip.integral(of_slip.raise * thresholds, slips);
   return std::max(0.0, form_.segments()[k].det() * sum);
 }
 

@@ -89,22 +89,27 @@ template <int dim>
 void ContactSlack<dim>::set_tangential(std::size_t k)
 {
   const Point<dim>& normal = state_.form.segments()[k].normal;
-  const auto tangential = [&](const Point<dim>& c) -> Point<dim> { return c - c.dot(normal) * normal; };
-  const std::vector<Point<dim>> coefficients = state_.facets.coefficients(k, state_.v);
-  std::vector<Point<dim>> v;
-  v.reserve(coefficients.size());
-  for (const Point<dim>& c : coefficients) v.push_back(tangential(c));
+  const std::vector<Point<dim>> slip = state_.facets.slip(k, state_.v);
   const std::span<const double> s = std::span(state_.t_h.thresholds).subspan(k * n_, n_);
+  const auto friction = [&](std::size_t j) -> Point<dim>
+  {
+    const Point<dim>& t = state_.t_h.coefficients[k * n_ + j];
+    return t - t.dot(normal) * normal;
+  };
   bool is_smooth = true;
   bool sticks = true;
   bool slips = dim == 2;
+  double least_slip = HUGE_VAL;
+  for (const Point<dim>& c : slip)
+  {
+    sticks = sticks && c.norm() <= length_;
+    slips = slips && c.dot(slip[0]) > 0 && c.norm() > length_;
+    least_slip = std::min(least_slip, c.norm());
+  }
   for (std::size_t j = 0; j < n_; ++j)
   {
-    const Point<dim> t = tangential(state_.t_h.coefficients[k * n_ + j]);
     is_smooth = is_smooth && s[j] <= stress_;
-    sticks = sticks && v[j].norm() <= length_;
-    slips = slips && v[j].dot(v[0]) > 0 && v[j].norm() > length_ &&
-            (t + s[j] * v[j].normalized()).norm() <= stress_;
+    slips = slips && (friction(j) + s[j] * slip[0].normalized()).norm() <= stress_;
   }
   is_held_[k] = sticks && !is_smooth ? 1 : 0;
   for (std::size_t j = 0; j < n_; ++j)
@@ -113,9 +118,9 @@ void ContactSlack<dim>::set_tangential(std::size_t k)
     if (is_smooth)
       slack.tangential_y = HUGE_VAL;
     else if (sticks)
-      slack.tangential_r = std::max(0.0, s[j] - tangential(state_.t_h.coefficients[k * n_ + j]).norm());
-    else if (slips)
-      slack.tangential_y = v[j].norm();
+      slack.tangential_r = std::max(0.0, s[j] - friction(j).norm());
+    else if (slips)  // the slip after an earlier one is in another basis
+      slack.tangential_y = state_.facets.has_slipped(k) ? least_slip : slip[j].norm();
   }
 }
 

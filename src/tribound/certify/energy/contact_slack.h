@@ -23,8 +23,9 @@ struct Slack
 
 /// For every facet, with m the factor of linear_bound():
 ///     closed, v^n = g_h:   |r^n| <= m (-t^n);       open, t^n = 0:            |y^n| <= m (g_h - v^n);
-///     stick, v^t = 0:      |r^t| <= m (s - |t^t|);  slip, t^t = -s v^t/|v^t|: |y^t| <= m |v^t| (2D: v^t of
-///     one sign); without friction y^t is free, between tied bodies r;
+///     stick, v^t = w:      |r^t| <= m (s - |t^t|);  slip, t^t = -s (v^t - w)/|v^t - w|: |y^t| <= m |v^t - w|
+///     (2D: v^t - w of one sign), w the slip before this load step; without friction y^t is free, between
+///     tied bodies r;
 /// everything else is 0, also between meshes that do not match; between bodies [v] takes the place of v. The
 /// limits for coefficients hold at every point, since both sides are in the same nonnegative basis.
 template <int dim>

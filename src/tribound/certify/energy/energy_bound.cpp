@@ -18,6 +18,7 @@
 #include "tribound/certify/energy/load_oscillation.h"
 #include "tribound/certify/energy/quantity_bounds.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/form_history.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/mesh.h"
@@ -53,15 +54,6 @@ std::vector<Point<dim>> edge_forces(const fem::LagrangeSpace<dim>& space, std::s
 }  // namespace
 
 template <int dim>
-std::string why_no_energy_bound(const contact::NitscheForm<dim>& form)
-{
-  if (std::string unfit = obstacles_unfit(form); !unfit.empty()) return unfit;
-  if (form.space().mesh().ranks().any(form.history() != nullptr && form.history()->states().size() > 0))
-    return "contact has a history of earlier load steps";
-  return {};
-}
-
-template <int dim>
 EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<const double> u,
                             std::span<const problem::Quantity<dim>> quantities, const std::string& reason)
 {
@@ -88,8 +80,10 @@ struct EnergyEstimator<dim>::Parts
   const contact::NitscheForm<dim>& richer(const contact::NitscheForm<dim>& given)
   {
     rich_space.emplace(given.space().mesh(), lowest_degree);
-    return rich_form.emplace(given.problem(), *rich_space, given.gamma0(),
-                             std::vector(given.segments().begin(), given.segments().end()));
+    rich_form.emplace(given.problem(), *rich_space, given.gamma0(),
+                      std::vector(given.segments().begin(), given.segments().end()));
+    if (given.history()) rich_form->set_history(contact::raised_history(given, *rich_form));
+    return *rich_form;
   }
 
   std::optional<fem::LagrangeSpace<dim>> rich_space;
@@ -109,7 +103,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
                                       const algebra::SolverOptions& solver,
                                       const std::vector<problem::Quantity<dim>>& quantities,
                                       std::optional<double> korn, PatchStress patches)
-    : form_(form), solver_(solver), reason_(why_no_energy_bound(form))
+    : form_(form), solver_(solver), reason_(obstacles_unfit(form))
 {
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
@@ -241,8 +235,6 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   return best;
 }
 
-template std::string why_no_energy_bound(const contact::NitscheForm<2>&);
-template std::string why_no_energy_bound(const contact::NitscheForm<3>&);
 template EnergyBound no_energy_bound(const contact::NitscheForm<2>&, std::span<const double>,
                                      std::span<const problem::Quantity<2>>, const std::string&);
 template EnergyBound no_energy_bound(const contact::NitscheForm<3>&, std::span<const double>,

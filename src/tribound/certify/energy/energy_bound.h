@@ -54,11 +54,6 @@ struct EnergyBound
 /// If a cell leaves more than this fraction of the stress unbalanced, there is no bound.
 inline constexpr double cell_balance_limit = 1e-8;
 
-/// Why functions on the mesh of a form can have no bound, in words; empty: contact gives no objection. The
-/// same on all ranks, which call it together.
-template <int dim>
-[[nodiscard]] std::string why_no_energy_bound(const contact::NitscheForm<dim>& form);
-
 /// No bound of u, for this reason, but the values of the quantities and the intervals that follow from
 /// equilibrium alone. Throws InputError for quantities that the problem does not have. All ranks together.
 template <int dim>

@@ -7,7 +7,7 @@ namespace tribound::certify
 {
 
 template <int dim>
-bool is_homogeneous(const contact::NitscheForm<dim>& form)
+bool is_homogeneous(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets)
 {
   const auto is_zero = [](const problem::Field& field) { return field.is_zero(); };
   bool result = true;
@@ -27,7 +27,9 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form)
     return std::ranges::any_of(segment.offset, [&](const Point<dim>& offset)
                                { return std::abs(offset.dot(segment.normal)) > size; });
   };
-  return result && !form.space().mesh().ranks().any(std::ranges::any_of(form.segments(), is_apart));
+  bool differs = std::ranges::any_of(form.segments(), is_apart);
+  for (std::size_t k = 0; k < facets.size(); ++k) differs = differs || facets.has_slipped(k);
+  return result && !form.space().mesh().ranks().any(differs);
 }
 
 template <int dim>
@@ -57,8 +59,8 @@ void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInt
   interval.cells = state.shares((interval.upper - interval.lower) / 2);
 }
 
-template bool is_homogeneous(const contact::NitscheForm<2>&);
-template bool is_homogeneous(const contact::NitscheForm<3>&);
+template bool is_homogeneous(const contact::NitscheForm<2>&, const ObstacleFacets<2>&);
+template bool is_homogeneous(const contact::NitscheForm<3>&, const ObstacleFacets<3>&);
 template void set_energy(const BoundedState<2>&, bool, QuantityInterval&);
 template void set_energy(const BoundedState<3>&, bool, QuantityInterval&);
 

@@ -9,9 +9,9 @@
 namespace tribound::certify
 {
 
-/// Whether u_D = 0 and g = 0, between bodies too. All ranks together.
+/// Whether u_D = 0, g = 0 and w = 0, between bodies too. All ranks together.
 template <int dim>
-[[nodiscard]] bool is_homogeneous(const contact::NitscheForm<dim>& form);
+[[nodiscard]] bool is_homogeneous(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets);
 
 /// Sets the interval of a(u, u): with m = (tau + sigma(v))/2
 ///     | ||u||_en - ||m|| | <= mid,

@@ -148,7 +148,7 @@ Matrix MovedFacets<dim>::nearest_on(const Facet& facet, std::span<const WantedCo
       const double along = c.dot(segment.normal);
       Point<dim> target = Point<dim>::Zero();
       if (wanted[k].closed) target += (along - gap) * segment.normal;
-      if (wanted[k].sticks) target += c - along * segment.normal;
+      if (wanted[k].sticks) target += c - along * segment.normal - form_.contact_points(k)[q].state.slip;
       moments += side(facet, k).sign * segment.det() * rule.weights[q] * on_facet.row(q).transpose() *
                  target.transpose();
     }

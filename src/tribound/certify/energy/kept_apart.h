@@ -12,7 +12,7 @@
 namespace tribound::certify
 {
 
-/// What is wanted on a segment: [v]^n = g, and [v]^t = 0.
+/// What is wanted on a segment: [v]^n = g, and [v]^t = w, the slip before this load step.
 struct WantedContact
 {
   bool closed = false;
@@ -28,7 +28,7 @@ enum class MovedSide
 
 /// v = u - z, with z on that side of the segments that do not match. z is the sum of
 ///  - the mean over the facets around each node of the polynomials nearest to ([u]^n - g) n where `closed`,
-///    plus [u]^t where `sticks`, in Bernstein's basis;
+///    plus [u]^t - w where `sticks`, in Bernstein's basis;
 ///  - a_j q_j, n . [q_j] >= 1 for the normals of all segments around j, a_j the smallest for which no
 ///    coefficient of [v]^n - g_h on segments is positive: coefficients of the second part on a segment are
 ///    means of those on its facet.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tribound/certify/energy/traction_fit.h"
 #include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/fem/bernstein.h"
@@ -32,7 +33,7 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
 }  // namespace
 
 template <int dim>
-std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
+std::string laws_unfit(const contact::NitscheForm<dim>& form)
 {
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
@@ -41,18 +42,19 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
     return "a direction of contact varies along facets";
   if (any([](const Segment& segment) { return segment.contact->water.has_value(); }))
     return "there is water in a joint";
-  if (any(
-          [](const Segment& segment)
-          {
-            const problem::FrictionCone cone = problem::cone(segment.contact->law);
-            return cone.is_bonded;
-          }))
+  if (any([](const Segment& segment) { return problem::cone(segment.contact->law).is_bonded; }))
     return "a contact law has a bond";
-  if (any(
-          [&](const Segment& segment) {
-            return problem::cone(segment.contact->law).is_tied &&
-                   !contact::is_whole(form.space().mesh(), segment);
-          }))
+  return {};
+}
+
+template <int dim>
+std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
+{
+  if (std::string unfit = laws_unfit(form); !unfit.empty()) return unfit;
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const auto is_torn = [&](const contact::ContactSegment<dim>& segment)
+  { return problem::cone(segment.contact->law).is_tied && !contact::is_whole(mesh, segment); };
+  if (mesh.ranks().any(std::ranges::any_of(form.segments(), is_torn)))
     return "meshes of tied bodies do not match";
   return {};
 }
@@ -92,6 +94,39 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
     for (std::size_t j = 0; j < n_; ++j)
       for (std::size_t i = 0; i < n_; ++i)
         gaps_[k * n_ + j] += from_values_[j * n_ + i] * nodal_gaps_[k * n_ + i];
+  }
+  if (form.history()) set_slips();
+}
+
+/// w is a polynomial of degree p + 2 on each segment.
+template <int dim>
+void ObstacleFacets<dim>::set_slips()
+{
+  const int degree = form_.space().degree();
+  const fem::LagrangeBasis<dim - 1> richer(degree + 2);
+  raise_ = bernstein_raised<dim>(degree, degree + 2);
+  std::ptrdiff_t n_slipped = 0;
+  for (std::size_t k = 0; k < size(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form_.segments()[k];
+    const problem::FrictionCone cone = problem::cone(segment.contact->law);
+    const auto add_coefficients = [&](const fem::LagrangeBasis<dim - 1>& basis, std::vector<Point<dim>>& to)
+    {
+      Eigen::Matrix<double, dim, Eigen::Dynamic> values(dim, basis.n_nodes());
+      for (int i = 0; i < basis.n_nodes(); ++i)
+      {
+        const Point<dim> w = form_.history()->at(segment.contact->law, k, basis.node_point(i)).slip;
+        values.col(i) = w - w.dot(segment.normal) * segment.normal;
+      }
+      if (values.isZero(0)) return false;
+      values = (values * bernstein_from_nodes(basis).transpose()).eval();
+      for (Eigen::Index i = 0; i < values.cols(); ++i) to.push_back(values.col(i));
+      return true;
+    };
+    const bool counts = cone.resists_sliding() && !cone.is_tied && add_coefficients(richer, slips_);
+    slipped_.push_back(counts ? n_slipped++ : -1);
+    if (counts && !add_coefficients(basis_, nodal_slips_))
+      nodal_slips_.resize(nodal_slips_.size() + n_, Point<dim>::Zero());
   }
 }
 
@@ -162,6 +197,23 @@ std::vector<Point<dim>> ObstacleFacets<dim>::on_master(std::size_t k, std::span<
 }
 
 template <int dim>
+std::vector<Point<dim>> ObstacleFacets<dim>::slip(std::size_t k, std::span<const double> u) const
+{
+  const Point<dim>& normal = form_.segments()[k].normal;
+  std::vector<Point<dim>> result = coefficients(k, u);
+  for (Point<dim>& c : result) c -= c.dot(normal) * normal;
+  if (!has_slipped(k)) return result;
+  const std::size_t n = slips_.size() / (nodal_slips_.size() / n_);
+  std::vector<Point<dim>> raised(n, Point<dim>::Zero());
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    for (std::size_t j = 0; j < n_; ++j) raised[i] += raise_(i, j) * result[j];
+    raised[i] -= slips_[slipped_[k] * n + i];
+  }
+  return raised;
+}
+
+template <int dim>
 std::vector<char> ObstacleFacets<dim>::junctions() const
 {
   const fem::LagrangeSpace<dim>& space = form_.space();
@@ -204,6 +256,8 @@ std::vector<Point<dim>> ObstacleFacets<dim>::coefficients(std::size_t k, std::sp
   return result;
 }
 
+template std::string laws_unfit(const contact::NitscheForm<2>&);
+template std::string laws_unfit(const contact::NitscheForm<3>&);
 template std::string obstacles_unfit(const contact::NitscheForm<2>&);
 template std::string obstacles_unfit(const contact::NitscheForm<3>&);
 template class ObstacleFacets<2>;

@@ -16,9 +16,11 @@
 namespace tribound::certify
 {
 
-/// Why v^n - g_h is not a polynomial on some segment of Gamma_C, or why contact there is more than v^n <= g,
-/// or [v] = 0 between meshes that do not match; empty if nothing is so. The same on all ranks, which call it
-/// together.
+/// Why v^n - g_h is not a polynomial on some segment of Gamma_C, or why contact there is more than v^n <= g
+/// with friction; empty if neither is so. The same on all ranks, which call it together.
+template <int dim>
+[[nodiscard]] std::string laws_unfit(const contact::NitscheForm<dim>& form);
+/// The same, or why [v] = 0 is impossible between tied bodies: their meshes do not match.
 template <int dim>
 [[nodiscard]] std::string obstacles_unfit(const contact::NitscheForm<dim>& form);
 
@@ -58,6 +60,15 @@ class ObstacleFacets
   }
   /// Coefficients of [u] for a function u of the space.
   [[nodiscard]] std::vector<Point<dim>> coefficients(std::size_t k, std::span<const double> u) const;
+  /// Whether friction on segment k counts from a slip w of earlier load steps that is not 0.
+  [[nodiscard]] bool has_slipped(std::size_t k) const { return !slipped_.empty() && slipped_[k] >= 0; }
+  /// Coefficients of u^t - w: of degree p + 2 if has_slipped(k), else p.
+  [[nodiscard]] std::vector<Point<dim>> slip(std::size_t k, std::span<const double> u) const;
+  /// Coefficient j of the interpolant of w of degree p.
+  [[nodiscard]] Point<dim> slip_before(std::size_t k, std::size_t j) const
+  {
+    return has_slipped(k) ? nodal_slips_[slipped_[k] * n_ + j] : Point<dim>(Point<dim>::Zero());
+  }
   /// Coefficients of u on the slave, and on the master: 0 against an obstacle.
   [[nodiscard]] std::vector<Point<dim>> on_slave(std::size_t k, std::span<const double> u) const
   {
@@ -77,6 +88,7 @@ class ObstacleFacets
   /// Maps values at the nodes of a side (0: slave) to coefficients on segment k.
   [[nodiscard]] std::span<const double> on_segment(std::size_t k, int side) const;
   void add_part(const contact::ContactSegment<dim>& segment);
+  void set_slips();
   [[nodiscard]] std::vector<Point<dim>> transformed(std::span<const Index> nodes,
                                                     std::span<const double> matrix,
                                                     std::span<const double> by_node) const;
@@ -92,6 +104,10 @@ class ObstacleFacets
   std::vector<double> of_parts_;
   std::vector<double> nodal_gaps_;  ///< at the nodes of segments
   std::vector<double> gaps_;
+  std::vector<std::ptrdiff_t> slipped_;  ///< number among segments with slips; -1: none; empty: all without
+  std::vector<Point<dim>> slips_;        ///< coefficients of w, of degree p + 2
+  std::vector<Point<dim>> nodal_slips_;  ///< of its interpolants of degree p
+  Eigen::MatrixXd raise_;                ///< bernstein_raised(p, p + 2)
 };
 
 }  // namespace tribound::certify

@@ -75,7 +75,7 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, cons
 {
   systems_ = &systems;
   is_held_ = is_held;
-  is_homogeneous_ = is_homogeneous(bounded);
+  is_homogeneous_ = is_homogeneous(bounded, facets);
   work_is_energy_ = is_homogeneous_ && slides_freely(bounded);
   std::optional<ContactWeights<dim>> weights;
   for (Item& item : items_)
@@ -129,7 +129,8 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
   }
   double square = 0;
   for (std::size_t i = 1; i < item.numbers.size(); ++i) square += std::pow(of_contact(i), 2);
-  return square > 0 ? item.parts.coefficient * of_contact(0) / std::sqrt(square) : 0;
+  return square > 0 ? item.parts.coefficient * (of_contact(0) - item.parts.uplift.value) / std::sqrt(square)
+                    : 0;
 }
 
 namespace
@@ -142,8 +143,17 @@ QuantityInterval known_interval(const KnownNumber& number)
   return result;
 }
 
+/// Unless it is there or empty.
+void add_note(QuantityInterval& interval, const std::string& note)
+{
+  if (note.empty() || interval.note.find(note) != std::string::npos) return;
+  interval.note += (interval.note.empty() ? "" : "; ") + note;
+}
+
 /// Sets the interval of a quantity from those of its numbers.
-void combine(QuantityInterval& interval, double coefficient, const std::vector<QuantityInterval>& numbers)
+template <int dim>
+void combine(QuantityInterval& interval, const QuantityParts<dim>& parts,
+             std::vector<QuantityInterval> numbers)
 {
   if (numbers.size() == 1)
   {
@@ -153,7 +163,11 @@ void combine(QuantityInterval& interval, double coefficient, const std::vector<Q
     interval.cells = numbers[0].cells;
   }
   else
-    set_safety_factor(interval, coefficient, numbers[0], {numbers.begin() + 1, numbers.end()});
+  {
+    numbers[0].lower -= parts.uplift.value + parts.uplift.uncertainty;
+    numbers[0].upper -= parts.uplift.value - parts.uplift.uncertainty;
+    set_safety_factor(interval, parts.coefficient, numbers[0], {numbers.begin() + 1, numbers.end()});
+  }
   interval.exact = std::ranges::all_of(numbers, &QuantityInterval::exact);
   for (const QuantityInterval& number : numbers)
     if (!number.exact || interval.exact) interval.basis = number.basis;
@@ -171,13 +185,14 @@ std::vector<QuantityInterval> QuantityBounds<dim>::from_equilibrium(std::span<co
   {
     QuantityInterval& interval = result.emplace_back();
     interval.name = item.parts.quantity.name;
+    interval.note = item.parts.note;
     if (item.parts.reason.empty()) interval.value = value(item, u, t);
     interval.reason = item.reason.empty() ? reason : item.reason;
     if (!item.is_known()) continue;
     std::vector<QuantityInterval> numbers;
     for (const LinearNumber<dim>& number : item.numbers) numbers.push_back(known_interval(*number.known));
     interval.reason = {};
-    combine(interval, item.parts.coefficient, numbers);
+    combine<dim>(interval, item.parts, std::move(numbers));
   }
   return result;
 }
@@ -219,13 +234,12 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       for (const LinearNumber<dim>& number : item.numbers)
       {
         numbers.push_back(bounded(item, number, state, *of_numbers));
-        if (number.weight && !number.weight->note.empty()) interval.note = number.weight->note;
+        if (number.weight) add_note(interval, number.weight->note);
       }
-      combine(interval, item.parts.coefficient, numbers);
+      combine<dim>(interval, item.parts, std::move(numbers));
     }
     if (state.bound.target == EnergyTarget::computed_friction)
-      interval.note +=
-          (interval.note.empty() ? "" : "; ") + std::string("of the computed friction threshold");
+      add_note(interval, "of the computed friction threshold");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "tribound/fem/evaluation.h"
+#include "tribound/fem/simplex_parts.h"
 
 namespace tribound::certify
 {
@@ -68,10 +69,32 @@ std::array<Point<dim>, dim - 1> tangents(const Point<dim>& n)
   }
 }
 
+/// The integral of p_w over a boundary.
+template <int dim>
+KnownNumber uplift_on(const contact::NitscheForm<dim>& form, int tag)
+{
+  std::array<double, 2> sums{};  // U, what quadrature may miss
+  for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    if (segment.slave.facet.tag != tag || !segment.contact->water) continue;
+    for (const contact::ContactPoint<dim>& point : form.contact_points(k))
+      sums[0] += point.weight * point.water;
+    for (const contact::ContactDatumPart<dim>& part : form.data().contact_parts(k))
+      sums[1] += part.water * segment.measure * fem::fraction<dim - 1>(part.part);
+  }
+  form.space().mesh().ranks().sum(std::span(sums));
+  constexpr double rounding = 1e-14;
+  return {sums[0], sums[1] + rounding * sums[0]};
+}
+
 template <int dim>
 void set_safety_parts(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
 {
   parts.coefficient = problem::cone(form.problem().contact(parts.tag)->law).coefficient;
+  parts.uplift = uplift_on(form, parts.tag);
+  if (const auto& water = form.problem().contact(parts.tag)->water; water && water->follows_crack())
+    parts.note = "with water as far as the computed crack";
   const Point<dim> n = parts.direction;
   if (!is_plane<dim>(form.space().mesh(), parts.tag, n))
   {

@@ -22,13 +22,15 @@ struct QuantityParts
   std::vector<ContactResultant<dim>>
       resultants;                             ///< of forces and moments; safety factors: N, then those of H
   double coefficient = 0;                     ///< mu_F of safety factors
+  KnownNumber uplift{};                       ///< U = integral of p_w for safety factors
   Point<dim> direction = Point<dim>::Zero();  ///< e of mean displacements, a unit vector
   double measure = 0;                         ///< of their boundary
+  std::string note{};                         ///< what else its value depends on
   std::string reason{};                       ///< why it is not a number; empty: it is one
 };
 
 /// Throws InputError if a boundary does not exist or is not the contact boundary that is needed, for a safety
-/// factor if friction is not Coulomb's alone, and for the direction 0. All ranks together.
+/// factor without friction coefficient, and for the direction 0. All ranks together.
 template <int dim>
 [[nodiscard]] QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form,
                                           const problem::Quantity<dim>& quantity);

@@ -79,6 +79,13 @@ Eigen::MatrixXd bernstein_from_nodes(const fem::LagrangeBasis<k>& basis)
 }
 
 template <int dim>
+Eigen::MatrixXd bernstein_raised(int lower, int higher)
+{
+  const fem::LagrangeBasis<dim - 1> basis(higher);
+  return bernstein_from_nodes(basis) * bernstein_at<dim>(lower, basis.node_points());
+}
+
+template <int dim>
 TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
     : form_(form),
       basis_(form.space().degree()),
@@ -189,6 +196,8 @@ template Eigen::MatrixXd bernstein_at<2>(int, std::span<const Point<1>>);
 template Eigen::MatrixXd bernstein_at<3>(int, std::span<const Point<2>>);
 template Eigen::MatrixXd bernstein_from_nodes(const fem::LagrangeBasis<1>&);
 template Eigen::MatrixXd bernstein_from_nodes(const fem::LagrangeBasis<2>&);
+template Eigen::MatrixXd bernstein_raised<2>(int, int);
+template Eigen::MatrixXd bernstein_raised<3>(int, int);
 template class TractionFit<2>;
 template class TractionFit<3>;
 

@@ -38,6 +38,9 @@ template <int dim>
 /// Coefficients in the basis from values at its nodes, [coefficient, node].
 template <int k>
 [[nodiscard]] Eigen::MatrixXd bernstein_from_nodes(const fem::LagrangeBasis<k>& basis);
+/// Coefficients of the higher degree from those of the lower one, [coefficient, coefficient]; means of these.
+template <int dim>
+[[nodiscard]] Eigen::MatrixXd bernstein_raised(int lower, int higher);
 
 /// Fits coefficients to tractions at the contact points of a facet. The products of the basis differ between
 /// facets only by the factor det of the segment; products here are without it. Keeps a reference to the form.

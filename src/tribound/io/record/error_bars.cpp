@@ -54,16 +54,24 @@ const char* words_of(certify::EnergyTarget target)
 std::string words_of_guarantee(const LevelRecord& level, const CaseFacts& facts)
 {
   if (!has_bound(level)) return {};
-  return fmt::format("the error in the energy norm: the distance of the computed displacement from {}{}",
+  return fmt::format("the error in the energy norm: the distance of the computed displacement {}from {}{}",
+                     level.load_step ? "of a load step, after the computed slip of those before it, " : "",
                      words_of(level.energy->target), words_of_remainders(*level.energy, facts));
 }
 
 std::string words_of(const certify::QuantityInterval& quantity, const std::string& unit)
 {
-  const std::string value = fmt::format("{:.6g}{}{}", quantity.value, unit.empty() ? "" : " ", unit);
+  const auto with_unit = [&](double number)
+  { return fmt::format("{:.6g}{}{}", number, unit.empty() ? "" : " ", unit); };
+  const std::string value = with_unit(quantity.value);
   if (!quantity.reason.empty()) return value + ", without error bar: " + quantity.reason;
   const std::string note = quantity.note.empty() ? std::string() : "; " + quantity.note;
-  if (quantity.exact) return fmt::format("{}, exact ({}){}", value, quantity.basis, note);
+  if (quantity.exact)
+  {
+    const std::string known = with_unit((quantity.lower + quantity.upper) / 2);
+    return fmt::format("{}, exact ({}){}{}", known, quantity.basis,
+                       known == value ? "" : "; of the computed solution " + value, note);
+  }
   return fmt::format("{}, guaranteed between {:.6g} and {:.6g} ({}){}", value, quantity.lower, quantity.upper,
                      quantity.basis, note);
 }
@@ -135,10 +143,9 @@ void add_energy_error(Json& object, const LevelRecord& level)
   object["energy_error"] = nullptr;
   if (!has_bound(level))
   {
-    object["energy_reason"] = level.energy      ? level.energy->reason
-                              : level.load_step ? "it is not bounded over load steps"
-                              : level.bound     ? "not computed on this mesh, see certify.energy"
-                                                : "there is no bound of the residual";
+    object["energy_reason"] = level.energy  ? level.energy->reason
+                              : level.bound ? "not computed on this mesh, see certify.energy"
+                                            : "there is no bound of the residual";
     return;
   }
   const certify::EnergyBound& bound = *level.energy;

@@ -25,7 +25,8 @@ namespace tribound::io
 /// What the bound guarantees, as a sentence of the certificate; empty without a bound.
 [[nodiscard]] std::string words_of_guarantee(const LevelRecord& level, const CaseFacts& facts);
 
-/// A quantity in words: "1.646 N/mm, guaranteed between 1.63 and 1.66 (energy bound)"; `unit` may be empty.
+/// A quantity in words: "1.646 N/mm, guaranteed between 1.63 and 1.66 (energy bound)", or the number itself
+/// where it is exact; `unit` may be empty.
 [[nodiscard]] std::string words_of(const certify::QuantityInterval& quantity, const std::string& unit);
 
 /// Whether every interval of a level overlaps that of a better solution of the same problem: both contain the

@@ -56,8 +56,7 @@ TableRow newton_row(const char* level_name, int level, const adapt::CertifiedSte
   return row;
 }
 
-/// Load steps have no bound in the energy norm.
-TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind, bool has_steps)
+TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind)
 {
   TableRow row = level_columns(level);
   append(row, {{"energy", level.figures.energy},
@@ -65,9 +64,9 @@ TableRow convergence_row(const LevelRecord& level, const certify::RunKind& kind,
                {"contact_tangential", level.figures.contact.tangential},
                {"t_solve", level.times.stages.solve},
                {"t_certify", level.times.stages.certify},
-               {"t_level", level.times.level}});
-  if (!has_steps)
-    append(row, {{"energy_bound", energy_bound(level)}, {"energy_relative", relative_energy_bound(level)}});
+               {"t_level", level.times.level},
+               {"energy_bound", energy_bound(level)},
+               {"energy_relative", relative_energy_bound(level)}});
   append(row, further_columns(level, kind));
   return row;
 }
@@ -98,6 +97,21 @@ TableRow hydraulic_columns(const std::optional<HydraulicFigures>& figures)
           {"overturning", f.overturning}};
 }
 
+/// Values, and ends where there is an interval.
+TableRow quantity_columns(std::span<const certify::QuantityInterval> quantities)
+{
+  TableRow row;
+  for (const certify::QuantityInterval& quantity : quantities)
+  {
+    const auto known = [&](double end)
+    { return quantity.reason.empty() ? std::optional(end) : std::nullopt; };
+    append(row, {{"quantity." + quantity.name, quantity.value},
+                 {"quantity." + quantity.name + ".lower", known(quantity.lower)},
+                 {"quantity." + quantity.name + ".upper", known(quantity.upper)}});
+  }
+  return row;
+}
+
 TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
 {
   const LoadStepRecord& step = level.load_step.value_or(LoadStepRecord());
@@ -106,7 +120,7 @@ TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
                   {"control", step.control},
                   {"cuts", step.cuts},
                   {"passes", step.passes}};
-  TableRow of_level = convergence_row(level, kind, true);
+  TableRow of_level = convergence_row(level, kind);
   row.insert(row.end(), std::make_move_iterator(of_level.begin() + 1),
              std::make_move_iterator(of_level.end()));
   append(row, {{"relative_path", bound_along_path(level)}});
@@ -126,6 +140,7 @@ TableRow history_row(const LevelRecord& level, const certify::RunKind& kind)
                {"work", step.work},
                {"balance", step.balance}});
   for (const auto& [name, value] : step.watched) row.push_back({"watch." + name, std::optional(value)});
+  if (level.energy) append(row, quantity_columns(level.energy->quantities));
   return row;
 }
 
@@ -162,7 +177,7 @@ std::string convergence_csv(std::span<const LevelRecord> levels)
   const bool has_steps = std::ranges::any_of(levels, is_load_step);
   const auto row_of = [&](const LevelRecord& level)
   {
-    TableRow row = convergence_row(level, kind, has_steps);
+    TableRow row = convergence_row(level, kind);
     if (has_steps)
       append(row,
              {{"load_step", level.load_step_number.value_or(0)}, {"relative_path", bound_along_path(level)}});
