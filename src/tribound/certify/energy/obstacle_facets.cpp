@@ -225,9 +225,10 @@ std::vector<char> ObstacleFacets<dim>::junctions() const
   for (std::size_t i = 0; i < nodes_.size(); ++i)
   {
     Index& known = opposite[nodes_[i]];
+    const bool is_known = known != unknown && known != between_nodes;
     const Index partner = matches(i / n_) ? master_nodes_[i] : between_nodes;
-    if (known != unknown && known != partner) mark(nodes_[i]);
-    known = partner;
+    if (is_known && partner != between_nodes && known != partner) mark(nodes_[i]);
+    if (!is_known) known = partner;
   }
   for (const Index node : master_nodes_)
     if (node >= 0 && opposite[node] != unknown) mark(node);

@@ -49,7 +49,7 @@ class ObstacleFacets
     return std::span(master_nodes_).subspan(k * n_, form_.segments()[k].master ? n_ : 0);
   }
   /// Marks degrees of freedom of slave nodes that have more than one opposite partner or are masters as well.
-  /// Nodes of facets that do not match have one partner, "between nodes". All ranks together.
+  /// Segments that do not match give no partner. All ranks together.
   [[nodiscard]] std::vector<char> junctions() const;
   /// Marks degrees of freedom on facets that do not match. All ranks together.
   [[nodiscard]] std::vector<char> between_meshes() const;
