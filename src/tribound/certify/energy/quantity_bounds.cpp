@@ -129,8 +129,11 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
   }
   double square = 0;
   for (std::size_t i = 1; i < item.numbers.size(); ++i) square += std::pow(of_contact(i), 2);
-  return square > 0 ? item.parts.coefficient * (of_contact(0) - item.parts.uplift.value) / std::sqrt(square)
-                    : 0;
+  constexpr double rounding = 1e-10;  // of N, below which no force makes it slide
+  const double total = of_contact(0);
+  return std::sqrt(square) > rounding * std::abs(total)
+             ? item.parts.coefficient * (total - item.parts.uplift.value) / std::sqrt(square)
+             : 0;
 }
 
 namespace
