@@ -240,6 +240,13 @@ void expect_statics()
     for (problem::BoundaryCondition<dim>& boundary : lifted.boundaries)
       if (boundary.contact) boundary.contact->water.emplace(formula("0.1 + 0.05*x"));
     expect_known(interval_from_statics<dim>(lifted, factor), 0.3 * (0.8 - 0.3) / 0.01);
+    for (problem::BoundaryCondition<dim>& boundary : lifted.boundaries)
+      if (boundary.contact) boundary.contact->water.emplace(formula("0.2*abs(x^2 - 2)"));
+    const QuantityInterval kinked = interval_from_statics<dim>(lifted, factor);
+    expect_contains(kinked, 0.3 * (0.8 - 0.2 * (8 * std::sqrt(2.0) - 4) / 3) / 0.01);
+    for (problem::BoundaryCondition<dim>& boundary : lifted.boundaries)
+      if (boundary.contact) boundary.contact->water.emplace(formula("1"));
+    expect_known(interval_from_statics<dim>(lifted, factor), 0);  // the bond is in tension
   }
   Quantity<dim> moment{.name = "tilting", .kind = QuantityKind::contact_moment, .boundary = "bottom"};
   moment.point = Point<dim>::Unit(0);  // below the centre of gravity: the push alone turns, by y^3

@@ -44,6 +44,12 @@ std::string laws_unfit(const contact::NitscheForm<dim>& form)
     return "there is water in a joint";
   if (any([](const Segment& segment) { return problem::cone(segment.contact->law).is_bonded; }))
     return "a contact law has a bond";
+  const auto has_both = [](const Segment& segment)
+  {
+    const problem::FrictionCone cone = problem::cone(segment.contact->law);
+    return cone.coefficient > 0 && cone.strength != nullptr && !cone.strength->is_zero();
+  };
+  if (any(has_both)) return "a contact law has a threshold beside its friction coefficient";
   return {};
 }
 

@@ -132,7 +132,7 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
   constexpr double rounding = 1e-10;  // of N, below which no force makes it slide
   const double total = of_contact(0);
   return std::sqrt(square) > rounding * std::abs(total)
-             ? item.parts.coefficient * (total - item.parts.uplift.value) / std::sqrt(square)
+             ? item.parts.coefficient * std::max(0.0, total - item.parts.uplift.value) / std::sqrt(square)
              : 0;
 }
 

@@ -41,9 +41,9 @@ void set_safety_factor(QuantityInterval& interval, double coefficient, const Qua
     least += nearest * nearest;
     most += std::pow(std::max(std::abs(component.lower), std::abs(component.upper)), 2);
   }
-  const double at_least = coefficient * std::max(normal.lower, 0.0) / std::sqrt(most);  // N >= 0
-  if (least > 0 && normal.upper > 0)
-    set_ends(interval, at_least, coefficient * normal.upper / std::sqrt(least), 0);
+  const double at_least = coefficient * std::max(normal.lower, 0.0) / std::sqrt(most);  // in tension 0
+  if (least > 0)
+    set_ends(interval, at_least, coefficient * std::max(normal.upper, 0.0) / std::sqrt(least), 0);
   else
     interval.reason =
         std::isfinite(at_least)

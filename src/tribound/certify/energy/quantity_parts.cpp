@@ -81,7 +81,7 @@ KnownNumber uplift_on(const contact::NitscheForm<dim>& form, int tag)
     for (const contact::ContactPoint<dim>& point : form.contact_points(k))
       sums[0] += point.weight * point.water;
     for (const contact::ContactDatumPart<dim>& part : form.data().contact_parts(k))
-      sums[1] += part.water * segment.measure * fem::fraction<dim - 1>(part.part);
+      sums[1] += 2 * part.water * segment.measure * fem::fraction<dim - 1>(part.part);
   }
   form.space().mesh().ranks().sum(std::span(sums));
   constexpr double rounding = 1e-14;
