@@ -271,6 +271,7 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
     // If a slave is the master of another one, the other has to follow.
     constexpr int most_sweeps = 5;
     std::vector<WantedContact> wanted;
+    wanted.reserve(states.size());
     for (const FacetState& state : states)
       wanted.push_back(
           {holds(state.closed, transition_is_closed), holds(state.sticks, transition_is_closed)});
