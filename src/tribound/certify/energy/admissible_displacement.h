@@ -37,7 +37,7 @@ struct AdmissibleDisplacements
 /// v equals u except on Gamma_C. There its coefficients in Bernstein's basis, the control points, are those
 /// of u, moved. Facets share the control points on their edges and vertices. On each facet
 ///     v^n = g_h if it or, at shared ones, one of the facets is closed, else v^n <= g_h;
-///     v^t = 0 if it or one of the facets sticks, else as in u;
+///     v^t = w_h if it or one of the facets sticks, w_h of the slip before this load step, else as in u;
 /// they never move along axes that Gamma_D fixes. Between bodies [v] takes the place of v; the slaves move,
 /// or the masters where slaves are fixed. Where facets with different normals meet:
 /// certify/energy/control_point.h; where meshes do not match: certify/energy/kept_apart.h. The basis is
