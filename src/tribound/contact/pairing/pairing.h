@@ -41,7 +41,9 @@ struct FacetPair
 /// opposite one G each, on which Pi is affine; points without a partner are in none. |l| <= reach is tested
 /// at the centroid of the common part of F and G. Corners within 1e-12 of an edge, in barycentric
 /// coordinates, count as on it: form and certificate use the same segments, so this rounding changes the
-/// problem slightly but not the guarantee. Ordered by slave facets, then by the places of the master facets.
+/// problem slightly but not the guarantee. So does this: facets whose corners lie opposite each other within
+/// 1e-6 of the slave facet, as in meshes read from files with few digits, are opposite corner by corner.
+/// Ordered by slave facets, then by the places of the master facets.
 /// O(n log n).
 ///
 /// On a distributed mesh, after with_partners(): the complete pairs of the slave and master facets of cells

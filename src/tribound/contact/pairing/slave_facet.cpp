@@ -18,7 +18,9 @@ namespace
 constexpr double facing = 0.1;  ///< least cosine of an angle between e and n_F, e and -n_G, n_F and -n_G
 constexpr double smallest_part = 1e-14;  ///< of the slave facet
 constexpr double overlapping = 1e-9;     ///< of the slave facet: more than rounding
-constexpr double same_distance = 1e-9;   ///< of the diameter of the slave facet
+constexpr double same_corner = 1e-6;     ///< coordinates on the slave facet that differ by less are the same
+constexpr double sliver = 6 * same_corner;  ///< at most this part of a slave facet lies beside its twin
+constexpr double same_distance = 1e-9;      ///< of the diameter of the slave facet
 
 /// l is affine on the plane of the slave facet: computed from its values at the corners of the master.
 template <int dim>
@@ -33,6 +35,23 @@ void set_distance(Candidate<dim>& found, const std::array<double, dim>& distance
   }
   found.slope = edges.inverse() * differences;
   found.distance = distances[0] - found.slope.dot(found.polygon[0].slave);
+}
+
+/// Moves the corners of a master facet to those of the slave facet if they are the same but for rounding in
+/// mesh files: the pairing then identifies the facets. Returns whether it does.
+template <int dim>
+bool identify(Polygon<dim>& master)
+{
+  Polygon<dim> moved = master;
+  for (const Point<dim - 1>& corner : fem::reference_simplex<dim - 1>())
+  {
+    const auto found = std::ranges::find_if(
+        master, [&](const auto& x) { return (x.slave - corner).cwiseAbs().maxCoeff() <= same_corner; });
+    if (found == master.end()) return false;
+    moved[found - master.begin()].slave = corner;
+  }
+  master = std::move(moved);
+  return true;
 }
 
 template <int dim>
@@ -115,6 +134,7 @@ void SlaveFacet<dim>::add(const FacetShape<dim>& master)
     found.polygon.push_back({seen.template head<dim - 1>(), corners[i]});
     distances[i] = seen[dim - 1];
   }
+  found.is_twin = identify<dim>(found.polygon);
   set_distance<dim>(found, distances);
   clip_to_slave<dim>(found.polygon);
   if (fraction<dim>(found.polygon) <= smallest_part) return;
@@ -126,6 +146,8 @@ void SlaveFacet<dim>::add(const FacetShape<dim>& master)
 template <int dim>
 void SlaveFacet<dim>::append_pairs(std::vector<FacetPair<dim>>& pairs)
 {
+  if (std::ranges::any_of(candidates_, &Candidate<dim>::is_twin))
+    std::erase_if(candidates_, [](const Candidate<dim>& c) { return fraction<dim>(c.polygon) <= sliver; });
   const auto nearer = [](const Candidate<dim>& a, const Candidate<dim>& b)
   { return std::tie(a.nearness, a.place) < std::tie(b.nearness, b.place); };
   std::ranges::sort(candidates_, nearer);

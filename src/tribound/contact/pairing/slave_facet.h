@@ -46,6 +46,7 @@ struct Candidate
   double distance;                      ///< l at s = 0
   Point<dim - 1> slope;                 ///< its gradient in s
   double nearness = 0;                  ///< |l| at the centroid
+  bool is_twin = false;                 ///< it has the corners of the slave facet
 
   [[nodiscard]] double distance_at(const Point<dim - 1>& s) const
   {
