@@ -156,6 +156,17 @@ ProblemData<dim> on_another()
           .pairs = {pair<dim>("bottom", "top_below", Coulomb(0.3))}};
 }
 
+/// The same with directions of contact that vary along facets.
+template <int dim>
+ProblemData<dim> turned(ProblemData<dim> data)
+{
+  std::vector<problem::Field> direction = {formula("x/sqrt(9 + x^2)"), formula("-3/sqrt(9 + x^2)")};
+  if (dim == 3) direction.emplace_back(0.0);
+  problem::Contact& contact = data.pairs.empty() ? *data.boundaries.back().contact : data.pairs[0].contact;
+  contact.normal = problem::NormalField(std::move(direction));
+  return data;
+}
+
 /// Ends and values of the intervals of a wave, with the sizes that rounding is measured by.
 template <int dim>
 std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const ProblemData<dim>& data,
@@ -197,17 +208,20 @@ TEST(Quantities, HaveTheIntervalsOfTheWhole)
   {
     for (const bool is_on_another : {false, true})
     {
-      const ProblemData<dim> data = is_on_another ? on_another<dim>() : on_obstacles<dim>();
       const mesh::Mesh<dim> whole(is_on_another ? renumbered(matching_blocks<dim>(2), degree)
                                                 : distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
-      const mesh::Mesh<dim> part = contact::with_partners<dim>(
-          mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs);
-      const auto expected = intervals<dim>(whole, data, degree);
-      const auto found = intervals<dim>(part, data, degree);
-      ASSERT_EQ(found.size(), expected.size());
-      for (std::size_t i = 0; i < found.size(); ++i)
-        EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
-            << dim << "D, p = " << degree << ", " << i;
+      const ProblemData<dim> plain = is_on_another ? on_another<dim>() : on_obstacles<dim>();
+      for (const ProblemData<dim>& data : {plain, turned<dim>(plain)})
+      {
+        const mesh::Mesh<dim> part = contact::with_partners<dim>(
+            mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs);
+        const auto expected = intervals<dim>(whole, data, degree);
+        const auto found = intervals<dim>(part, data, degree);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t i = 0; i < found.size(); ++i)
+          EXPECT_NEAR(found[i][0], expected[i][0], 1e-9 * (expected[i][1] + std::abs(expected[i][0])))
+              << dim << "D, p = " << degree << ", " << i;
+      }
     }
   };
   for (int degree = 1; degree <= 3; ++degree) expect_same_intervals.template operator()<2>(degree);
@@ -255,7 +269,8 @@ TEST(EnergyBound, IsThatOfTheWhole)
     const mesh::Mesh<dim> part = mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr);
     ProblemData<dim> with_sine = pressed_block<dim>();  // quadrature misses a part of it
     with_sine.body_force[0] = formula("0.1*sin(3*x + y)");
-    for (const ProblemData<dim>& data : {pressed_block<dim>(), resting_block<dim>(), with_sine})
+    for (const ProblemData<dim>& data :
+         {pressed_block<dim>(), resting_block<dim>(), with_sine, turned(pressed_block<dim>())})
     {
       const double korn = certify::korn_constant(data.on(whole), whole);
       const std::vector<double> expected = energy_bound<dim>(whole, data, degree, korn);

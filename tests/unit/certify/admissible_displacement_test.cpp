@@ -366,10 +366,6 @@ TEST(AdmissibleDisplacementReasons, AreGiven)
     EXPECT_FALSE(result.open || result.closed);
     return result.reason;
   };
-  ProblemData<2> data = pressed_block<2>();
-  data.boundaries.back().contact->normal =
-      problem::NormalField({formula("x/sqrt(1 + x^2)"), formula("-1/sqrt(1 + x^2)")});
-  EXPECT_EQ(reason(data, block<2>({4, 2})), "a direction of contact varies along facets");
   EXPECT_EQ(reason(pressed_block<2>(problem::JointLaw({.coefficient = 0.5}, 0.01)), block<2>({4, 2})),
             "a contact law has a threshold beside its friction coefficient");
   const ProblemData<2> bodies = {.boundaries = {clamped<2>("left"), clamped<2>("left below")},

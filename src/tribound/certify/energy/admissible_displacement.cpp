@@ -225,12 +225,12 @@ double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& 
   double largest = -HUGE_VAL;
   for (std::size_t k = 0; k < facets.size(); ++k)
   {
-    const std::vector<Point<dim>> coefficients = facets.coefficients(k, v);
+    const std::vector<Point<dim>> coefficients = facets.turned(k, facets.coefficients(k, v));
     const bool is_tied = problem::cone(form.segments()[k].contact->law).is_tied;
     for (std::size_t j = 0; j < coefficients.size(); ++j)
       largest =
           std::max(largest, is_tied ? coefficients[j].norm()
-                                    : form.segments()[k].normal.dot(coefficients[j]) - facets.gap(k)[j]);
+                                    : facets.frames().normal(k).dot(coefficients[j]) - facets.gap(k)[j]);
   }
   return form.space().mesh().ranks().max(largest);
 }
@@ -264,6 +264,7 @@ AdmissibleDisplacements admissible_displacements(const contact::NitscheForm<dim>
   result.has_transition = ranks.any(
       std::ranges::any_of(states, [](const FacetState& state) { return state.is_in_transition(); }));
   result.gap_remainder = ranks.max(facets.gap_remainder());
+  result.direction_remainder = ranks.max(facets.frames().remainder());
 
   const double most = 1e-14 * size_on(form, facets, u);  // rounding
   const auto make = [&](bool transition_is_closed, double& beyond) -> std::optional<std::vector<double>>

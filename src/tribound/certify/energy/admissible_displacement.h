@@ -27,6 +27,7 @@ struct AdmissibleDisplacements
   /// Largest |g - g_h| at the contact points, g_h of degree p with the values of g at the nodes: v is
   /// admissible for g_h.
   double gap_remainder = 0;
+  double direction_remainder = 0;  ///< largest |N - M N_0| there
   /// Largest coefficient of v^n - g_h in Bernstein's basis on a facet, recomputed from v: at most 1e-14 max
   /// |u|, |g| for a displacement that is given.
   double excess_open = 0;

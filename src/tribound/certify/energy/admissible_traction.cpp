@@ -31,7 +31,7 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
     const typename TractionFit<dim>::Columns values = b * fit.at_points().transpose();
     for (int q = 0; q < n_points; ++q)
     {
-      result.at_points[k * n_points + q] = values.col(q);
+      result.at_points[k * n_points + q] = fit.frames().at_point(k, q) * values.col(q);
       double s_h = 0;
       for (Eigen::Index j = 0; j < n; ++j) s_h += fit.at_points()(q, j) * cones[j].limit;
       const double strength = form.contact_points(k)[q].strength;
@@ -127,7 +127,7 @@ class SlipIntegral
 template <int dim>
 struct ContactGap<dim>::Tables
 {
-  /// For slips of the degree.
+  /// For slips and gaps of the degree.
   struct OfSlip
   {
     OfSlip(const contact::NitscheForm<dim>& form, int degree)
@@ -143,12 +143,12 @@ struct ContactGap<dim>::Tables
   };
 
   explicit Tables(const contact::NitscheForm<dim>& form)
-      : plain(form, form.space().degree()), after_slip(form, form.space().degree() + 2)
+      : plain(form, form.space().degree()), rich(form, form.space().degree() + 2)
   {
   }
 
   OfSlip plain;
-  OfSlip after_slip;
+  OfSlip rich;
 };
 
 template <int dim>
@@ -167,24 +167,24 @@ double ContactGap<dim>::operator()(std::size_t k, const AdmissibleTraction<dim>&
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   const Matrix& at_points = tables_->plain.at_points;
   const Eigen::Index n = at_points.cols();
-  const Point<dim>& normal = form_.segments()[k].normal;
-  const std::vector<Point<dim>> coefficients = facets_.coefficients(k, v);
-  Eigen::VectorXd normal_gap(n);
-  Eigen::VectorXd thresholds(n);
-  for (Eigen::Index j = 0; j < n; ++j)
-  {
+  const Point<dim>& normal = facets_.frames().normal(k);
+  const std::vector<Point<dim>> coefficients = facets_.turned(k, facets_.coefficients(k, v));
+  Eigen::VectorXd normal_gap(std::ssize(coefficients));
+  for (Eigen::Index j = 0; j < normal_gap.size(); ++j)
     normal_gap[j] = coefficients[j].dot(normal) - facets_.gap(k)[j];
-    thresholds[j] = t.thresholds[k * n + j];
-  }
-  const typename Tables::OfSlip& of_slip = facets_.has_slipped(k) ? tables_->after_slip : tables_->plain;
+  const Matrix& of_gap = facets_.frames().turns(k) ? tables_->rich.at_points : at_points;
+  const typename Tables::OfSlip& of_slip = facets_.slip_is_rich(k) ? tables_->rich : tables_->plain;
   const std::vector<Point<dim>> slip = facets_.slip(k, v);
-  const Eigen::Map<const typename SlipIntegral<dim>::Columns> slips(slip[0].data(), dim, std::ssize(slip));
+  using Columns = typename SlipIntegral<dim>::Columns;
+  const Eigen::Map<const Columns> slips(slip[0].data(), dim, std::ssize(slip));
+  const Eigen::Map<const Columns> y(t.coefficients[k * n].data(), dim, n);
+  const Eigen::Map<const Eigen::VectorXd> thresholds(&t.thresholds[k * n], n);
   double sum = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
-    const Point<dim>& t_h = t.at_points[k * rule.size() + q];
+    const Point<dim> y_there = y * at_points.row(q).transpose();
     const Point<dim> slip_there = slips * of_slip.at_points.row(q).transpose();
-    sum += rule.weights[q] * (t_h.dot(normal) * at_points.row(q).dot(normal_gap) + t_h.dot(slip_there));
+    sum += rule.weights[q] * (y_there.dot(normal) * of_gap.row(q).dot(normal_gap) + y_there.dot(slip_there));
   }
   if (thresholds.maxCoeff() > 0) sum += of_slip.integral(of_slip.raise * thresholds, slips);
   return std::max(0.0, form_.segments()[k].det() * sum);

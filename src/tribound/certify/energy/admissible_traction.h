@@ -14,7 +14,8 @@
 namespace tribound::certify
 {
 
-/// t_h = sum_j t_j B_j on every facet of ObstacleFacets, of the degree of the space, with
+/// t_h = sum_j t_j B_j on every facet of ObstacleFacets, of the degree of the space, where N varies M times
+/// that, with
 ///     t_j^n <= 0,   |t_j^t| <= s_j,   s_h = sum_j s_j B_j >= 0,
 /// so that t_h^n <= 0 and |t_h^t| <= s_h at every point. s_h interpolates the threshold of Tresca's law, with
 /// negative s_j set to 0; for Coulomb's law it is -mu_F t_h^n, without friction 0.

@@ -151,7 +151,7 @@ Matrix BalanceConditions<dim>::tangents(const State& state) const
     for (Jump& jump : jumps(k))
     {
       motions.push_back(jump.motion);
-      z.push_back(std::move(jump.values));
+      z.push_back(fit_.turned(k, std::move(jump.values)));
     }
     if (z.empty()) return;
     const double det = form_.segments()[k].det();

@@ -226,6 +226,7 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
     if (!best.reason.empty() || (bound.reason.empty() && bound.bound < best.bound)) best = std::move(bound);
   }
   best.gap_remainder = v.gap_remainder;
+  best.direction_remainder = v.direction_remainder;
   best.threshold_remainder = ranks.max(t_h.threshold_remainder);
   if (ranks.any(std::ranges::any_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
                                     { return problem::cone(segment.contact->law).coefficient > 0; })))

@@ -44,6 +44,7 @@ struct EnergyBound
   double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance
   double gap_remainder = 0;        ///< largest |g - g_h| at the contact points; length
   double threshold_remainder = 0;  ///< largest |s - s_h| there; stress
+  double direction_remainder = 0;  ///< largest |N - M N_0| there, M of contact_frames.h
   bool is_open = true;  ///< whether v with facets in transition taken as open and slipping is the better one
   /// Per own cell A_T^2 + 4 G_F of its facets, A_T = ||tau - sigma(v)|| + O_T, for marking.
   std::vector<double> cells{};

@@ -24,8 +24,13 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form, const ObstacleFacets<
     if (segment.contact->gap || problem::cone(segment.contact->law).is_tied) return false;
     const auto map = contact::simplex_map(form.space().mesh(), segment.slave);
     const double size = rounding * (map.origin.norm() + map.jacobian.norm());
-    return std::ranges::any_of(segment.offset, [&](const Point<dim>& offset)
-                               { return std::abs(offset.dot(segment.normal)) > size; });
+    return std::ranges::any_of(segment.offset,
+                               [&](const Point<dim>& offset)
+                               {
+                                 return (segment.varying_normal != nullptr
+                                             ? offset.norm()
+                                             : std::abs(offset.dot(segment.normal))) > size;
+                               });
   };
   bool differs = std::ranges::any_of(form.segments(), is_apart);
   for (std::size_t k = 0; k < facets.size(); ++k) differs = differs || facets.has_slipped(k);

@@ -9,7 +9,7 @@ namespace
 /// Whether v and tau are admissible for the given data themselves.
 bool has_all_data(const EnergyBound& bound)
 {
-  return bound.gap_remainder == 0 && bound.threshold_remainder == 0;
+  return bound.gap_remainder == 0 && bound.threshold_remainder == 0 && bound.direction_remainder == 0;
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ IntervalComparison compare_intervals(const EnergyBound& bound, const QuantityInt
   if (bound.target != EnergyTarget::solution || other_bound.target != EnergyTarget::solution)
     return {.reason = "both are of their computed friction thresholds"};
   if (!meet && !(has_all_data(bound) && has_all_data(other_bound)))
-    return {.reason = "gaps, thresholds or loads are interpolated, on each mesh in another way"};
+    return {.reason = "gaps, thresholds or directions are interpolated, on each mesh in another way"};
   return {.agree = meet};
 }
 

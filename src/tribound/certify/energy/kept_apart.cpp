@@ -55,7 +55,7 @@ class MovedFacets
   /// The direction on the facet in which [z]^n grows on segment k.
   [[nodiscard]] Point<dim> away(const Facet& facet, std::size_t k) const
   {
-    return side(facet, k).sign * form_.segments()[k].normal;
+    return side(facet, k).sign * facets_.frames().normal(k);
   }
   [[nodiscard]] Matrix nearest_on(const Facet& facet, std::span<const WantedContact> wanted,
                                   std::span<const double> u) const;
@@ -76,7 +76,7 @@ MovedFacets<dim>::MovedFacets(const contact::NitscheForm<dim>& form, const Obsta
   {
     if (facets.matches(k)) continue;
     const contact::ContactSegment<dim>& segment = form.segments()[k];
-    const bool is_master = masters_move[segment.pair] != 0;
+    const bool is_master = segment.master && masters_move[segment.pair] != 0;
     Facet& facet = moved_[is_master ? segment.master->number : segment.slave.number];
     facet.is_master = is_master;
     facet.segments.push_back(k);
@@ -95,7 +95,7 @@ std::vector<char> MovedFacets<dim>::masters_move(MovedSide side) const
   for (std::size_t k = 0; k < form_.n_owned_segments(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form_.segments()[k];
-    if (facets_.matches(k)) continue;
+    if (facets_.matches(k) || !segment.master) continue;
     const double of_slave = segment.slave.stress_direction.norm();
     costs[segment.pair] +=
         segment.measure * (std::log(of_slave / (1 - of_slave)) +
@@ -138,17 +138,13 @@ Matrix MovedFacets<dim>::nearest_on(const Facet& facet, std::span<const WantedCo
     const std::vector<Point<dim>> jump = facets_.coefficients(k, u);
     for (int q = 0; q < rule.size(); ++q)
     {
+      const contact::ContactPoint<dim>& point = form_.contact_points(k)[q];
       Point<dim> c = Point<dim>::Zero();
-      double gap = 0;
-      for (Eigen::Index j = 0; j < n; ++j)
-      {
-        c += on_segment(q, j) * jump[j];
-        gap += on_segment(q, j) * facets_.gap(k)[j];
-      }
-      const double along = c.dot(segment.normal);
+      for (Eigen::Index j = 0; j < n; ++j) c += on_segment(q, j) * jump[j];
+      const double along = c.dot(point.normal);
       Point<dim> target = Point<dim>::Zero();
-      if (wanted[k].closed) target += (along - gap) * segment.normal;
-      if (wanted[k].sticks) target += c - along * segment.normal - form_.contact_points(k)[q].state.slip;
+      if (wanted[k].closed) target += (along - point.gap) * point.normal;
+      if (wanted[k].sticks) target += c - along * point.normal - point.state.slip;
       moments += side(facet, k).sign * segment.det() * rule.weights[q] * on_facet.row(q).transpose() *
                  target.transpose();
     }
@@ -224,11 +220,12 @@ double MovedFacets<dim>::factor(const Facet& facet, std::span<const double> v,
   double result = 0;
   for (const std::size_t k : facet.segments)
   {
-    const std::vector<Point<dim>> jump = facets_.coefficients(k, v);
-    const std::vector<Point<dim>> of_q = facet.is_master ? facets_.on_master(k, q) : facets_.on_slave(k, q);
+    const std::vector<Point<dim>> jump = facets_.turned(k, facets_.coefficients(k, v));
+    const std::vector<Point<dim>> of_q =
+        facets_.turned(k, facet.is_master ? facets_.on_master(k, q) : facets_.on_slave(k, q));
     for (std::size_t j = 0; j < jump.size(); ++j)
     {
-      const double excess = form_.segments()[k].normal.dot(jump[j]) - facets_.gap(k)[j];
+      const double excess = facets_.frames().normal(k).dot(jump[j]) - facets_.gap(k)[j];
       if (excess > 0) result = std::max(result, excess / std::max(least, away(facet, k).dot(of_q[j])));
     }
   }

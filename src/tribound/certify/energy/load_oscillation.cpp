@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "tribound/certify/bound/poincare_korn.h"
 #include "tribound/certify/bound/transfer_terms.h"
+#include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
 {
@@ -73,6 +76,46 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double k
   return result;
 }
 
+namespace
+{
+
+/// Squares of ||t - Pi_k t|| on facets, by cell and local facet, on segments where N varies and t is of
+/// higher degree. On the master t acts as -J t, J = dS/dM.
+template <int dim>
+std::map<std::pair<Index, int>, double> turning_losses(const contact::NitscheForm<dim>& form,
+                                                       const ContactTerms<dim>& terms,
+                                                       std::span<const Point<dim>> t)
+{
+  const fem::Quadrature<dim - 1>& rule = form.facet_rule();
+  const auto n = static_cast<std::size_t>(rule.size());
+  const int degree = form.space().degree();
+  std::vector<double> theta(fem::polynomial_dimension(dim - 1, degree));
+  std::map<std::pair<Index, int>, double> squares;
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    if (segment.varying_normal == nullptr) continue;
+    const std::vector<Point<dim>> projected = terms.project(t.subspan(k * n, n));
+    double sum = 0;
+    for (std::size_t q = 0; q < n; ++q)
+    {
+      fem::orthonormal_values<dim - 1>(degree, rule.points[q], theta);
+      Point<dim> rest = t[k * n + q];
+      for (std::size_t i = 0; i < theta.size(); ++i) rest -= theta[i] * projected[i];
+      sum += segment.det() * rule.weights[q] * rest.squaredNorm();
+    }
+    const auto add = [&](const contact::SegmentSide<dim>& side)
+    {
+      const double measure = contact::simplex_map(form.space().mesh(), side).measure;
+      squares[{side.facet.cell, side.facet.local}] += segment.measure / measure * sum;
+    };
+    segment.for_each_side(add);
+  }
+  return squares;
+}
+
+}  // namespace
+
 /// The facets carry projections of degree >= 1, so the rest is orthogonal to rigid motions.
 template <int dim>
 std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
@@ -80,15 +123,18 @@ std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::vector<double> result(mesh.n_owned_cells(), 0.0);
-  for (const auto& [cell, transfers] : facet_transfers<dim>(form, terms, t))
+  const auto add = [&](Index cell, int facet, double loss)
   {
-    double sum = 0;
+    if (cell < mesh.n_owned_cells() && loss > 0)
+      result[cell] += constants_of(mesh, cell).facets[facet] * loss / std::sqrt(stiffness_of(form, cell));
+  };
+  for (const auto& [cell, transfers] : facet_transfers<dim>(form, terms, t))
     for (const FacetTransfer<dim>& transfer : transfers)
       for (const auto& pieces : transfer.groups)
-        sum += constants_of(mesh, cell).facets[transfer.facet.local] *
-               transfer_loss<dim>(mesh, transfer.facet, form.space().degree(), pieces);
-    result[cell] = sum / std::sqrt(stiffness_of(form, cell));
-  }
+        add(cell, transfer.facet.local,
+            transfer_loss<dim>(mesh, transfer.facet, form.space().degree(), pieces));
+  for (const auto& [facet, square] : turning_losses(form, terms, t))
+    add(facet.first, facet.second, std::sqrt(square));
   return result;
 }
 

@@ -38,8 +38,10 @@ std::string laws_unfit(const contact::NitscheForm<dim>& form)
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
-  if (any([](const Segment& segment) { return segment.varying_normal != nullptr; }))
-    return "a direction of contact varies along facets";
+  const auto turns_with_friction = [](const Segment& segment)
+  { return segment.varying_normal != nullptr && problem::cone(segment.contact->law).resists_sliding(); };
+  if (form.history() && any(turns_with_friction))
+    return "a direction of contact varies along facets that may have slipped in earlier load steps";
   if (any([](const Segment& segment) { return segment.contact->water.has_value(); }))
     return "there is water in a joint";
   if (any([](const Segment& segment) { return problem::cone(segment.contact->law).is_bonded; }))
@@ -68,49 +70,69 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
 template <int dim>
 ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
     : form_(form),
+      frames_(form),
       basis_(form.space().degree()),
+      richer_(form.space().degree() + 2),
       n_(basis_.n_nodes()),
       to_values_(fem::values_from_bernstein(basis_)),
       from_values_(fem::bernstein_from_values(basis_)),
-      gaps_(form.segments().size() * n_, 0.0)
+      raise_(bernstein_raised<dim>(basis_.degree(), richer_.degree()))
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   const mesh::Mesh<dim>& mesh = space.mesh();
   for (std::size_t k = 0; k < size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
-    const mesh::BoundaryFacet& facet = segment.slave.facet;
-    const mesh::FacetMap<dim> map = mesh::facet_map(mesh, facet.cell, facet.local);
+    const auto map = contact::simplex_map(mesh, segment.slave);
     const bool is_tied = problem::cone(segment.contact->law).is_tied;
-    const bool is_whole = contact::is_whole(mesh, segment);
-    parts_.push_back(is_whole ? -1 : static_cast<std::ptrdiff_t>(of_parts_.size()));
-    if (!is_whole) add_part(segment);
+    const bool matches = contact::is_whole(mesh, segment) && !frames_.turns(k);
+    parts_.push_back(matches ? -1 : static_cast<std::ptrdiff_t>(of_parts_.size()));
+    if (!matches) add_part(segment);
     for (std::size_t j = 0; j < n_; ++j)
     {
       const Point<dim - 1> s = basis_.node_point(static_cast<int>(j));
       const auto node_of = [&](const contact::SegmentSide<dim>& side)
-      { return node_at<dim>(space, side.facet, is_whole ? side.on_facet(s) : s); };
-      const Index node = node_of(segment.slave);
-      const Point<dim> x = is_whole && node < mesh.n_vertices() ? Point<dim>(mesh.vertex(node))
-                                                                : map(segment.slave.on_facet(s));
-      nodes_.push_back(node);
+      { return node_at<dim>(space, side.facet, matches ? side.on_facet(s) : s); };
+      nodes_.push_back(node_of(segment.slave));
       master_nodes_.push_back(segment.master ? node_of(*segment.master) : -1);
-      nodal_gaps_.push_back(is_tied ? 0 : segment.gap(s, x, segment.normal));
     }
-    for (std::size_t j = 0; j < n_; ++j)
-      for (std::size_t i = 0; i < n_; ++i)
-        gaps_[k * n_ + j] += from_values_[j * n_ + i] * nodal_gaps_[k * n_ + i];
+    std::vector<double> gaps;
+    const fem::LagrangeBasis<dim - 1>& of_gap = frames_.turns(k) ? richer_ : basis_;
+    for (int j = 0; j < of_gap.n_nodes(); ++j)
+    {
+      const Point<dim - 1> s = of_gap.node_point(j);
+      const bool at_vertex = matches && nodes(k)[j] < mesh.n_vertices();
+      const Point<dim> x = at_vertex ? Point<dim>(mesh.vertex(nodes(k)[j])) : map(s);
+      gaps.push_back(is_tied ? 0 : segment.gap(s, x, segment.normal_at(x)));
+    }
+    const Eigen::VectorXd coefficients =
+        bernstein_from_nodes(of_gap) * Eigen::Map<const Eigen::VectorXd>(gaps.data(), std::ssize(gaps));
+    gaps_.insert(gaps_.end(), coefficients.begin(), coefficients.end());
+    gap_begins_.push_back(gaps_.size());
   }
   if (form.history()) set_slips();
+}
+
+template <int dim>
+std::vector<Point<dim>> ObstacleFacets<dim>::turned(std::size_t k, std::vector<Point<dim>> v) const
+{
+  if (!frames_.turns(k)) return v;
+  const std::vector<Point<dim - 1>> nodes = richer_.node_points();
+  using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
+  Columns values = Eigen::Map<const Columns>(v[0].data(), dim, std::ssize(v)) *
+                   bernstein_at<dim>(basis_.degree(), nodes).transpose();
+  for (Eigen::Index i = 0; i < values.cols(); ++i)
+    values.col(i) = (frames_.at(k, nodes[i]).transpose() * values.col(i)).eval();
+  values = (values * bernstein_from_nodes(richer_).transpose()).eval();
+  std::vector<Point<dim>> result(values.cols());
+  Eigen::Map<Columns>(result[0].data(), dim, values.cols()) = values;
+  return result;
 }
 
 /// w is a polynomial of degree p + 2 on each segment.
 template <int dim>
 void ObstacleFacets<dim>::set_slips()
 {
-  const int degree = form_.space().degree();
-  const fem::LagrangeBasis<dim - 1> richer(degree + 2);
-  raise_ = bernstein_raised<dim>(degree, degree + 2);
   std::ptrdiff_t n_slipped = 0;
   for (std::size_t k = 0; k < size(); ++k)
   {
@@ -129,7 +151,7 @@ void ObstacleFacets<dim>::set_slips()
       for (Eigen::Index i = 0; i < values.cols(); ++i) to.push_back(values.col(i));
       return true;
     };
-    const bool counts = cone.resists_sliding() && !cone.is_tied && add_coefficients(richer, slips_);
+    const bool counts = cone.resists_sliding() && !cone.is_tied && add_coefficients(richer_, slips_);
     slipped_.push_back(counts ? n_slipped++ : -1);
     if (counts && !add_coefficients(basis_, nodal_slips_))
       nodal_slips_.resize(nodal_slips_.size() + n_, Point<dim>::Zero());
@@ -168,18 +190,20 @@ template <int dim>
 double ObstacleFacets<dim>::gap_remainder() const
 {
   const auto& points = form_.facet_rule().points;
-  const fem::Tabulation<dim - 1> table = basis_.tabulate(points);
+  const Eigen::MatrixXd plain = bernstein_at<dim>(basis_.degree(), points);
+  const Eigen::MatrixXd rich = bernstein_at<dim>(richer_.degree(), points);
   constexpr double rounding = 1e-14;  // of coordinates, from which gaps are computed
   double largest = 0;
   for (std::size_t k = 0; k < size(); ++k)
-    for (int q = 0; q < table.n_points; ++q)
+    for (int q = 0; q < form_.n_segment_points(); ++q)
     {
       const contact::ContactSegment<dim>& segment = form_.segments()[k];
       if (problem::cone(segment.contact->law).is_tied) continue;
-      double rest = segment.gap(points[q], form_.contact_points(k)[q].x, segment.normal);
-      for (std::size_t i = 0; i < n_; ++i) rest -= table.values_at(q)[i] * nodal_gaps_[k * n_ + i];
-      if (std::abs(rest) > rounding * form_.contact_points(k)[q].x.norm())
-        largest = std::max(largest, std::abs(rest));
+      const Point<dim>& x = form_.contact_points(k)[q].x;
+      double rest = segment.gap(points[q], x, segment.normal_at(x));
+      for (std::size_t i = 0; i < gap(k).size(); ++i)
+        rest -= (frames_.turns(k) ? rich : plain)(q, static_cast<Eigen::Index>(i)) * gap(k)[i];
+      if (std::abs(rest) > rounding * x.norm()) largest = std::max(largest, std::abs(rest));
     }
   return largest;
 }
@@ -205,11 +229,11 @@ std::vector<Point<dim>> ObstacleFacets<dim>::on_master(std::size_t k, std::span<
 template <int dim>
 std::vector<Point<dim>> ObstacleFacets<dim>::slip(std::size_t k, std::span<const double> u) const
 {
-  const Point<dim>& normal = form_.segments()[k].normal;
-  std::vector<Point<dim>> result = coefficients(k, u);
+  const Point<dim>& normal = frames_.normal(k);
+  std::vector<Point<dim>> result = turned(k, coefficients(k, u));
   for (Point<dim>& c : result) c -= c.dot(normal) * normal;
   if (!has_slipped(k)) return result;
-  const std::size_t n = slips_.size() / (nodal_slips_.size() / n_);
+  const auto n = static_cast<std::size_t>(richer_.n_nodes());
   std::vector<Point<dim>> raised(n, Point<dim>::Zero());
   for (std::size_t i = 0; i < n; ++i)
   {

@@ -88,6 +88,7 @@ Eigen::MatrixXd bernstein_raised(int lower, int higher)
 template <int dim>
 TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
     : form_(form),
+      frames_(form),
       basis_(form.space().degree()),
       from_values_(bernstein_from_nodes(basis_)),
       at_points_(bernstein_at<dim>(basis_.degree(), form.facet_rule().points))
@@ -100,10 +101,18 @@ TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
 }
 
 template <int dim>
+auto TractionFit<dim>::turned(std::size_t k, Columns t) const -> Columns
+{
+  for (int q = 0; frames_.turns(k) && q < form_.n_segment_points(); ++q)
+    t.col(q) = (frames_.at_point(k, q).transpose() * t.col(q)).eval();
+  return t;
+}
+
+template <int dim>
 auto TractionFit<dim>::columns(std::size_t k, std::span<const Point<dim>> t) const -> Columns
 {
   const int n_points = form_.n_segment_points();
-  return Eigen::Map<const Columns>(t[k * n_points].data(), dim, n_points);
+  return turned(k, Eigen::Map<const Columns>(t[k * n_points].data(), dim, n_points));
 }
 
 template <int dim>
@@ -119,7 +128,7 @@ std::vector<TractionCone<dim>> TractionFit<dim>::cones(std::size_t k) const
   std::vector<TractionCone<dim>> cones;
   cones.reserve(thresholds.size());
   const problem::FrictionCone cone = problem::cone(law);
-  for (const double s : thresholds) cones.push_back({segment.normal, s, cone.coefficient, cone.is_tied});
+  for (const double s : thresholds) cones.push_back({frames_.normal(k), s, cone.coefficient, cone.is_tied});
   return cones;
 }
 

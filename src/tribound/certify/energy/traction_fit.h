@@ -9,6 +9,7 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/base/types.h"
+#include "tribound/certify/energy/contact_frames.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/lagrange.h"
 
@@ -55,7 +56,10 @@ class TractionFit
 
   /// The basis at the points, [point, coefficient].
   [[nodiscard]] const Eigen::MatrixXd& at_points() const { return at_points_; }
-  /// The part on facet k of a field at the contact points.
+  [[nodiscard]] const ContactFrames<dim>& frames() const { return frames_; }
+  /// M^T t, t at the points of facet k.
+  [[nodiscard]] Columns turned(std::size_t k, Columns t) const;
+  /// The same for a field at the contact points.
   [[nodiscard]] Columns columns(std::size_t k, std::span<const Point<dim>> t) const;
   /// The cones of the coefficients on facet k. Limits are thresholds in Bernstein's basis, from their values
   /// at the nodes; none is negative.
@@ -72,6 +76,7 @@ class TractionFit
 
  private:
   const contact::NitscheForm<dim>& form_;
+  ContactFrames<dim> frames_;
   fem::LagrangeBasis<dim - 1> basis_;
   Eigen::MatrixXd from_values_;
   Eigen::MatrixXd at_points_;

@@ -28,6 +28,10 @@ std::string words_of_remainders(const certify::EnergyBound& bound, const CaseFac
   if (bound.threshold_remainder > 0)
     text += fmt::format("; thresholds are interpolated, they differ by {:.3g}{} where they were compared",
                         bound.threshold_remainder, facts.behind(problem::UnitOf::stress));
+  if (bound.direction_remainder > 0)
+    text += fmt::format(
+        "; directions of contact are interpolated, they differ by {:.3g} where they were compared",
+        bound.direction_remainder);
   return text;
 }
 
@@ -164,7 +168,8 @@ void add_energy_error(Json& object, const LevelRecord& level)
       {"transfer", bound.transfer},
       {"cell_balance", bound.cell_balance},
       {"gap_remainder", bound.gap_remainder},
-      {"threshold_remainder", bound.threshold_remainder}};
+      {"threshold_remainder", bound.threshold_remainder},
+      {"direction_remainder", bound.direction_remainder}};
 }
 
 }  // namespace tribound::io
