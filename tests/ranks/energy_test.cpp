@@ -342,6 +342,14 @@ TEST(EnergyBound, IsThatOfTheWholeWhereFacetsAreCut)
         .pairs = {pair<dim>("bottom", "top_below", Tresca(0.03))}};
     expect_same_where_it_is_finer<dim>(renumbered(matching_blocks<dim>(2), degree), pressed, degree);
     expect_same_where_it_is_finer<dim>(renumbered(two_blocks<dim>(), degree), pressed, degree);
+    if constexpr (dim == 3)
+    {
+      ProblemData<3> tied{
+          .boundaries = {clamped<3>("left"), clamped<3>("bottom_below"), loaded<3>("top", 0, -0.1)},
+          .pairs = {pressed.pairs[0], pair<3>("right", "left_b", problem::Tied())}};
+      tied.pairs[0].slave.emplace_back("bottom_b");
+      expect_same_where_it_is_finer<3>(renumbered(three_blocks_on_another_mesh(), degree), tied, degree);
+    }
   };
   for (int degree = 1; degree <= 3; ++degree) expect_in.template operator()<2>(degree);
   for (int degree = 1; degree <= 2; ++degree) expect_in.template operator()<3>(degree);

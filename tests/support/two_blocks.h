@@ -56,6 +56,17 @@ mesh::MeshData<dim> three_blocks(int finer = 1)
   return data;
 }
 
+/// The same in three dimensions with another mesh of the third one.
+inline mesh::MeshData<3> three_blocks_on_another_mesh()
+{
+  const mesh::MeshData<3> left = box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 2});
+  const mesh::MeshData<3> right = box<3>({1, 0, 0}, {2, 1, 1}, {2, 1, 2});
+  mesh::MeshData<3> data = on_block<3>(side_by_side(left, right, "_b"), {3, 1, 1});
+  data.interfaces[0].sides[0].emplace_back("bottom_b");
+  data.interfaces.push_back({{{{"right"}, {"left_b"}}}});
+  return data;
+}
+
 /// Two blocks that touch, on meshes that do not match; names of the lower one end with "_below".
 template <int dim>
 mesh::MeshData<dim> two_blocks(int finer = 1)

@@ -112,10 +112,9 @@ class ControlPoints
       for (int a = 0; a < dim; ++a) fixed[a] = is_fixed(node, a) && (master < 0 || is_fixed(master, a));
       const Point<dim> before = slip_before(at, transition_is_closed);
       const Point<dim> from_opposite = at.position - at.places.front().opposite - before;
-      std::vector<ControlCondition<dim>> conditions = this->conditions(at, transition_is_closed);
+      std::vector<ControlCondition<dim>> conditions =
+          this->conditions(at, transition_is_closed, beside_[dim * node] != 0);
       for (ControlCondition<dim>& condition : conditions) condition.gap -= condition.normal.dot(before);
-      if (beside_[dim * node] != 0)  // it is kept apart from another mesh as well: no equalities
-        for (ControlCondition<dim>& condition : conditions) condition.closed = condition.sticks = false;
       const Point<dim> step = moved<dim>(from_opposite, fixed, conditions) - from_opposite;
       for (int a = 0; a < dim; ++a)
         if (!is_fixed(node, a))
@@ -166,9 +165,10 @@ class ControlPoints
     return n == 0 ? sum : sum / n;
   }
   /// Conditions on the distance from the opposite control point of the first facet. Facets with the same
-  /// normal share one condition.
+  /// normal share one condition. A point beside another mesh, from which it is kept apart as well, obeys no
+  /// equalities but those of tied bodies.
   [[nodiscard]] std::vector<ControlCondition<dim>> conditions(const ControlPoint& at,
-                                                              bool transition_is_closed) const
+                                                              bool transition_is_closed, bool is_beside) const
   {
     constexpr double same = 1e-12;
     std::vector<ControlCondition<dim>> result;
@@ -180,8 +180,9 @@ class ControlPoints
           result, [&](const ControlCondition<dim>& other) { return (other.normal - normal).norm() <= same; });
       if (found == result.end()) found = result.insert(found, {.normal = normal, .gap = gap});
       found->gap = std::min(found->gap, gap);
-      found->closed = found->closed || holds(states_[k].closed, transition_is_closed);
-      found->sticks = found->sticks || holds(states_[k].sticks, transition_is_closed);
+      const bool is_bound = !is_beside || problem::cone(form_.segments()[k].contact->law).is_tied;
+      found->closed = found->closed || (is_bound && holds(states_[k].closed, transition_is_closed));
+      found->sticks = found->sticks || (is_bound && holds(states_[k].sticks, transition_is_closed));
       found->pressure += states_[k].pressure;
       found->friction += states_[k].friction;
     }

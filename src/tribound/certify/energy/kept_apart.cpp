@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/energy/control_point.h"
@@ -43,6 +44,10 @@ class MovedFacets
   };
 
   [[nodiscard]] std::vector<char> masters_move(MovedSide side) const;
+  void find_tied();
+  /// The nodes that move with this one: itself and those tied to it.
+  [[nodiscard]] std::vector<Index> together(Index node) const;
+  [[nodiscard]] std::array<bool, dim> fixed(std::span<const Index> nodes) const;
   [[nodiscard]] const contact::SegmentSide<dim>& side(const Facet& facet, std::size_t k) const
   {
     return facet.is_master ? *form_.segments()[k].master : form_.segments()[k].slave;
@@ -63,7 +68,8 @@ class MovedFacets
 
   const contact::NitscheForm<dim>& form_;
   const ObstacleFacets<dim>& facets_;
-  std::map<std::size_t, Facet> moved_;  ///< by the number of the facet
+  std::map<std::size_t, Facet> moved_;     ///< by the number of the facet
+  std::map<Index, std::set<Index>> tied_;  ///< the nodes tied to a node
 };
 
 template <int dim>
@@ -81,6 +87,42 @@ MovedFacets<dim>::MovedFacets(const contact::NitscheForm<dim>& form, const Obsta
     facet.is_master = is_master;
     facet.segments.push_back(k);
   }
+  find_tied();
+}
+
+/// Also over several bodies that meet at a node.
+template <int dim>
+void MovedFacets<dim>::find_tied()
+{
+  for (std::size_t k = 0; k < facets_.size(); ++k)
+  {
+    if (!problem::cone(form_.segments()[k].contact->law).is_tied || !facets_.matches(k)) continue;
+    for (std::size_t j = 0; j < facets_.nodes(k).size(); ++j)
+    {
+      std::set<Index> all = {facets_.nodes(k)[j], facets_.master_nodes(k)[j]};
+      for (const Index node : {facets_.nodes(k)[j], facets_.master_nodes(k)[j]})
+        if (const auto known = tied_.find(node); known != tied_.end())
+          all.insert(known->second.begin(), known->second.end());
+      for (const Index node : all) tied_[node] = all;
+    }
+  }
+}
+
+template <int dim>
+std::vector<Index> MovedFacets<dim>::together(Index node) const
+{
+  const auto found = tied_.find(node);
+  return found == tied_.end() ? std::vector<Index>{node}
+                              : std::vector<Index>(found->second.begin(), found->second.end());
+}
+
+template <int dim>
+std::array<bool, dim> MovedFacets<dim>::fixed(std::span<const Index> nodes) const
+{
+  std::array<bool, dim> result{};
+  for (const Index node : nodes)
+    for (int a = 0; a < dim; ++a) result[a] = result[a] || form_.constraints().fixed[dim * node + a] != 0;
+  return result;
 }
 
 /// By pair. The weights of the sides in {sigma} are inverse to modulus / diameter.
@@ -170,16 +212,20 @@ std::vector<double> MovedFacets<dim>::nearest(std::span<const WantedContact> wan
     const Matrix coefficients = nearest_on(facet, wanted, u);
     for (std::size_t j = 0; j < nodes(facet).size(); ++j)
     {
-      Mean& mean = means[nodes(facet)[j]];
+      Mean& mean = means[together(nodes(facet)[j]).front()];
       mean.sum += coefficients.row(static_cast<Eigen::Index>(j)).transpose();
       ++mean.n;
     }
   }
   std::vector<double> result(form_.space().n_dofs(), 0.0);
-  for (const auto& [node, mean] : means)
-    for (int a = 0; a < dim; ++a)
-      if (const Index dof = dim * node + a; form_.constraints().fixed[dof] == 0)
-        result[dof] = mean.sum[a] / mean.n;
+  for (const auto& [first, mean] : means)
+  {
+    const std::vector<Index> nodes = together(first);
+    const std::array<bool, dim> fixed = this->fixed(nodes);
+    for (const Index node : nodes)
+      for (int a = 0; a < dim; ++a)
+        if (!fixed[a]) result[dim * node + a] = mean.sum[a] / mean.n;
+  }
   form_.space().update(std::span(result));
   return result;
 }
@@ -193,19 +239,18 @@ std::vector<double> MovedFacets<dim>::directions() const
     for (const std::size_t k : facet.segments)
       for (const Index node : nodes(facet))
       {
-        std::vector<ControlCondition<dim>>& known = conditions[node];
+        std::vector<ControlCondition<dim>>& known = conditions[together(node).front()];
         const Point<dim> n = away(facet, k);
         if (std::ranges::none_of(known, [&](const auto& other) { return (other.normal - n).norm() <= same; }))
           known.push_back({.normal = n, .gap = -1});
       }
   std::vector<double> result(form_.space().n_dofs(), 0.0);
-  for (const auto& [node, of_node] : conditions)
+  for (const auto& [first, of_nodes] : conditions)
   {
-    std::array<bool, dim> fixed;
-    for (int a = 0; a < dim; ++a) fixed[a] = form_.constraints().fixed[dim * node + a] != 0;
-    const Point<dim> q = -moved<dim>(Point<dim>::Zero(), fixed, of_node);
-    if (std::ranges::all_of(of_node, [&](const auto& condition) { return q.dot(condition.normal) > 0; }))
-      std::ranges::copy(q, &result[dim * node]);
+    const std::vector<Index> nodes = together(first);
+    const Point<dim> q = -moved<dim>(Point<dim>::Zero(), fixed(nodes), of_nodes);
+    if (std::ranges::all_of(of_nodes, [&](const auto& condition) { return q.dot(condition.normal) > 0; }))
+      for (const Index node : nodes) std::ranges::copy(q, &result[dim * node]);
   }
   form_.space().update(std::span(result));
   return result;
@@ -240,10 +285,15 @@ void MovedFacets<dim>::scale(std::span<const double> v, std::vector<double>& dir
   for (const auto& [number, facet] : moved_)
   {
     const double a = factor(facet, v, q);
-    for (const Index node : nodes(facet)) factors[node] = std::max(factors[node], a);
+    for (const Index node : nodes(facet))
+    {
+      double& of_nodes = factors[together(node).front()];
+      of_nodes = std::max(of_nodes, a);
+    }
   }
-  for (const auto& [node, a] : factors)
-    for (int c = 0; c < dim; ++c) directions[dim * node + c] *= a;
+  for (const auto& [first, a] : factors)
+    for (const Index node : together(first))
+      for (int c = 0; c < dim; ++c) directions[dim * node + c] *= a;
   form_.space().update(std::span(directions));
 }
 
@@ -255,7 +305,7 @@ std::vector<double> MovedFacets<dim>::values(std::span<const double> coefficient
   {
     const std::vector<Point<dim>> on_facet = facets_.values(nodes(facet), coefficients);
     for (std::size_t i = 0; i < on_facet.size(); ++i)
-      std::ranges::copy(on_facet[i], &result[dim * nodes(facet)[i]]);
+      for (const Index node : together(nodes(facet)[i])) std::ranges::copy(on_facet[i], &result[dim * node]);
   }
   form_.space().update(std::span(result));
   return result;

@@ -32,8 +32,8 @@ enum class MovedSide
 ///  - a_j q_j, n . [q_j] >= 1 for the normals of all segments around j, a_j the smallest for which no
 ///    coefficient of [v]^n - g_h on segments is positive: coefficients of the second part on a segment are
 ///    means of those on its facet.
-/// Nothing moves along axes that Gamma_D fixes, so it may be impossible where that side is fixed. All ranks
-/// together.
+/// Nodes of tied bodies move together. Nothing moves along axes that Gamma_D fixes, so it may be impossible
+/// where that side is fixed. All ranks together.
 template <int dim>
 [[nodiscard]] std::vector<double> kept_apart(const contact::NitscheForm<dim>& form,
                                              const ObstacleFacets<dim>& facets, MovedSide side,
