@@ -230,6 +230,25 @@ std::vector<double> MovedFacets<dim>::nearest(std::span<const WantedContact> wan
   return result;
 }
 
+/// The shortest q with n . q >= 1 for all normals, but for 1/0.9 where they are nearly the same, as where
+/// directions of contact vary: there are many then.
+template <int dim>
+Point<dim> away_from(const std::vector<ControlCondition<dim>>& conditions, const std::array<bool, dim>& fixed)
+{
+  constexpr double nearly = 0.9;
+  constexpr std::size_t most = 8;  // the time grows with the third power
+  Point<dim> mean = Point<dim>::Zero();
+  for (const ControlCondition<dim>& condition : conditions) mean += condition.normal;
+  for (int a = 0; a < dim; ++a)
+    if (fixed[a]) mean[a] = 0;
+  mean.normalize();
+  double least = 1;
+  for (const ControlCondition<dim>& condition : conditions)
+    least = std::min(least, mean.dot(condition.normal));
+  if (least >= nearly || (least > 0 && conditions.size() > most)) return mean / least;
+  return -moved<dim>(Point<dim>::Zero(), fixed, conditions);
+}
+
 template <int dim>
 std::vector<double> MovedFacets<dim>::directions() const
 {
@@ -248,7 +267,7 @@ std::vector<double> MovedFacets<dim>::directions() const
   for (const auto& [first, of_nodes] : conditions)
   {
     const std::vector<Index> nodes = together(first);
-    const Point<dim> q = -moved<dim>(Point<dim>::Zero(), fixed(nodes), of_nodes);
+    const Point<dim> q = away_from<dim>(of_nodes, fixed(nodes));
     if (std::ranges::all_of(of_nodes, [&](const auto& condition) { return q.dot(condition.normal) > 0; }))
       for (const Index node : nodes) std::ranges::copy(q, &result[dim * node]);
   }

@@ -76,10 +76,13 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
       n_(basis_.n_nodes()),
       to_values_(fem::values_from_bernstein(basis_)),
       from_values_(fem::bernstein_from_values(basis_)),
+      at_richer_nodes_(bernstein_at<dim>(basis_.degree(), richer_.node_points())),
+      from_richer_nodes_(bernstein_from_nodes(richer_)),
       raise_(bernstein_raised<dim>(basis_.degree(), richer_.degree()))
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   const mesh::Mesh<dim>& mesh = space.mesh();
+  const Eigen::MatrixXd from_nodes = bernstein_from_nodes(basis_);
   for (std::size_t k = 0; k < size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
@@ -105,8 +108,8 @@ ObstacleFacets<dim>::ObstacleFacets(const contact::NitscheForm<dim>& form)
       const Point<dim> x = at_vertex ? Point<dim>(mesh.vertex(nodes(k)[j])) : map(s);
       gaps.push_back(is_tied ? 0 : segment.gap(s, x, segment.normal_at(x)));
     }
-    const Eigen::VectorXd coefficients =
-        bernstein_from_nodes(of_gap) * Eigen::Map<const Eigen::VectorXd>(gaps.data(), std::ssize(gaps));
+    const Eigen::VectorXd coefficients = (frames_.turns(k) ? from_richer_nodes_ : from_nodes) *
+                                         Eigen::Map<const Eigen::VectorXd>(gaps.data(), std::ssize(gaps));
     gaps_.insert(gaps_.end(), coefficients.begin(), coefficients.end());
     gap_begins_.push_back(gaps_.size());
   }
@@ -119,11 +122,10 @@ std::vector<Point<dim>> ObstacleFacets<dim>::turned(std::size_t k, std::vector<P
   if (!frames_.turns(k)) return v;
   const std::vector<Point<dim - 1>> nodes = richer_.node_points();
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
-  Columns values = Eigen::Map<const Columns>(v[0].data(), dim, std::ssize(v)) *
-                   bernstein_at<dim>(basis_.degree(), nodes).transpose();
+  Columns values = Eigen::Map<const Columns>(v[0].data(), dim, std::ssize(v)) * at_richer_nodes_.transpose();
   for (Eigen::Index i = 0; i < values.cols(); ++i)
     values.col(i) = (frames_.at(k, nodes[i]).transpose() * values.col(i)).eval();
-  values = (values * bernstein_from_nodes(richer_).transpose()).eval();
+  values = (values * from_richer_nodes_.transpose()).eval();
   std::vector<Point<dim>> result(values.cols());
   Eigen::Map<Columns>(result[0].data(), dim, values.cols()) = values;
   return result;

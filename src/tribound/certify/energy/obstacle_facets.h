@@ -111,6 +111,8 @@ class ObstacleFacets
   std::vector<double> of_parts_;
   std::vector<double> gaps_;
   std::vector<std::size_t> gap_begins_{0};  ///< by segment, with the end
+  Eigen::MatrixXd at_richer_nodes_;         ///< Bernstein's basis of degree p
+  Eigen::MatrixXd from_richer_nodes_;       ///< bernstein_from_nodes(richer_)
   Eigen::MatrixXd raise_;                   ///< bernstein_raised(p, p + 2)
   std::vector<std::ptrdiff_t> slipped_;  ///< number among segments with slips; -1: none; empty: all without
   std::vector<Point<dim>> slips_;        ///< coefficients of w, of degree p + 2
