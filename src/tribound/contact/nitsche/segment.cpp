@@ -67,8 +67,8 @@ void ContactSegment<dim>::directions_and_gaps(std::span<const Point<dim - 1>> s,
 namespace
 {
 
-/// Coordinates on reference facets that differ by less are the same: the pairing identifies facets whose
-/// corners differ by more than rounding.
+/// Coordinates on reference facets that differ by less are the same. Corners of facets that nearly match are
+/// exact: the pairing has moved them.
 constexpr double same_corner = 1e-9;
 
 /// The vertices of the facet of a side in the order of the side's corners; absent if a corner is not a
