@@ -206,25 +206,24 @@ DiscreteProblem<dim> almost_matching(unsigned seed)
 }
 
 template <int dim>
-void expect_bounds_where_facets_almost_match(unsigned n)
+void expect_bound_where_facets_almost_match(unsigned seed)
 {
-  for (unsigned seed = 0; seed < n_cases(n); ++seed)
-  {
-    const DiscreteProblem<dim> c = almost_matching<dim>(seed);
-    const std::vector<double> u = c.solve().u;
-    const certify::EnergyBound bound = adapt::energy_bound<dim>(c.form, c.method, u);
-    const certify::RicherSpace richer{.refinements = dim == 2 ? 2 : 1, .degree = c.space.degree() + 1};
-    const double found = effectivity<dim>(RicherReference<dim>(c, richer), u, bound);
-    fmt::print("{}D, seed {}, p = {}: {:.3f}\n", dim, seed, c.space.degree(), found);
-    EXPECT_GE(found, 1) << seed;
-    EXPECT_LE(found, dim == 2 ? 2.5 : 4) << seed;
-  }
+  const DiscreteProblem<dim> c = almost_matching<dim>(seed);
+  const std::vector<double> u = c.solve().u;
+  const certify::EnergyBound bound = adapt::energy_bound<dim>(c.form, c.method, u);
+  const certify::RicherSpace richer{.refinements = dim == 2 ? 2 : 1, .degree = c.space.degree() + 1};
+  const double found = effectivity<dim>(RicherReference<dim>(c, richer), u, bound);
+  fmt::print("{}D, seed {}, p = {}: {:.3f}\n", dim, seed, c.space.degree(), found);
+  EXPECT_GE(found, 1) << seed << ": " << bound.reason;
+  EXPECT_LE(found, dim == 2 ? 2.5 : 4) << seed;
 }
 
 TEST(EnergyPairs, FacetsMayAlmostMatch)
 {
-  expect_bounds_where_facets_almost_match<2>(14);
-  expect_bounds_where_facets_almost_match<3>(4);
+  for (unsigned seed = 0; seed < n_cases(14); ++seed) expect_bound_where_facets_almost_match<2>(seed);
+  for (unsigned seed = 0; seed < n_cases(4); ++seed) expect_bound_where_facets_almost_match<3>(seed);
+  // Facets that match beside others that do not: repeated corrections closed gaps again.
+  expect_bound_where_facets_almost_match<3>(16);
 }
 
 /// Neither in three; only tied bodies need it.
