@@ -13,6 +13,8 @@
 #include "support/random_pair.h"
 #include "support/two_blocks.h"
 #include "tribound/adapt/error_bars.h"
+#include "tribound/certify/bound/poincare_korn.h"
+#include "tribound/certify/energy/load_oscillation.h"
 #include "tribound/mesh/refine.h"
 #include "verification/energy_effectivity.h"
 
@@ -236,6 +238,46 @@ TEST_P(EnergyPairs, InThreeDimensionsMeshesNeedNotMatch)
                                    {"not matching, Tresca", two_pressed<3>(Tresca(0.03))},
                                    {"not matching, resting", resting<3>(Tresca(0.06), true)}})
     EXPECT_GT(expect_effectivity<3>(name, data, two_blocks<3>(p), p, richer, 3).transfer, 0);
+}
+
+/// A constant traction from a cube on half of another one of twice its width, p = 1: on each of the two
+/// facets below, what is lost is 1 on the covered part less its projection on P^1, from areas and centroids
+/// of the triangles into which x = 1 and halving cut them.
+TEST(EnergyPairs, WhatIsLostCountsWithTheConstantOfItsCell)
+{
+  const DiscreteProblem<3> c(on_block<3>(box<3>({0, 0, 0}, {1, 1, 1}, {2, 1, 3}), {1, 1, 1}),
+                             two_pressed<3>(Frictionless()), {.degree = 1});
+  const std::vector<Point<3>> t(c.form.n_contact_points(), Point<3>(0.3, -2, 0.1));
+  const std::vector<double> found =
+      certify::transfer_oscillation<3>(c.form, {c.form, certify::ContactRule::resolved}, t);
+  const int below = problem::group_number("top_below", c.mesh.boundary_names(), {}, "boundary");
+  std::vector<double> expected(found.size(), 0.0);
+  for (const mesh::BoundaryFacet& facet : c.mesh.boundary())
+  {
+    if (facet.tag != below) continue;
+    const std::array<Index, 3> vertices = mesh::facet_vertices(c.mesh.cell(facet.cell), facet.local);
+    Eigen::Matrix3d corners;  // (x, z, 1) of each
+    for (int i = 0; i < 3; ++i)
+      corners.col(i) = Eigen::Vector3d(c.mesh.vertex(vertices[i])[0], c.mesh.vertex(vertices[i])[2], 1);
+    double covered = 0;
+    Eigen::Vector3d moments = Eigen::Vector3d::Zero();  // of barycentric coordinates
+    for (int i = 0; i < 4; ++i)                         // the corner triangles of halving, then the middle
+    {
+      Eigen::Vector3d centroid = Eigen::Vector3d::Constant(i < 3 ? 1.0 / 6 : 1.0 / 3);
+      if (i < 3) centroid[i] = 2.0 / 3;
+      if ((corners * centroid)[0] > 1) continue;
+      covered += 0.25;
+      moments += 0.25 * centroid;
+    }
+    const Eigen::Matrix3d gram =
+        (Eigen::Matrix3d::Identity() + Eigen::Matrix3d::Ones()) / 12;  // as shares of the area, which is 1
+    const double loss = t[0].norm() * std::sqrt(covered - moments.dot(gram.inverse() * moments));
+    const certify::PoincareKorn<3> constants =
+        certify::poincare_korn<3>(mesh::points_of(c.mesh.vertices(), c.mesh.cell(facet.cell)));
+    expected[facet.cell] = constants.facets[facet.local] * loss / std::sqrt(2 * lame(1, 0.3).mu);
+    EXPECT_GT(loss, 0.1);
+  }
+  for (std::size_t cell = 0; cell < found.size(); ++cell) EXPECT_NEAR(found[cell], expected[cell], 1e-9);
 }
 
 TEST(EnergyPairs, TiedBodiesHaveToMatchInThreeDimensions)
