@@ -184,9 +184,9 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
 template <int dim>
 bool is_linear(const contact::NitscheForm<dim>& form)
 {
-  const bool all_tied = std::ranges::all_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
-                                            { return problem::cone(segment.contact->law).is_tied; });
-  return !form.space().mesh().ranks().any(!all_tied);
+  const bool all_hold = std::ranges::all_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
+                                            { return problem::cone(segment.contact->law).is_bilateral; });
+  return !form.space().mesh().ranks().any(!all_hold);
 }
 
 }  // namespace

@@ -18,9 +18,10 @@ std::string number_text(const Node& node)
   return fmt::format("{}", to_number(node));
 }
 
-/// The meanings of the words of `normal`, for a contact with an obstacle and for a pair.
+/// The meanings of the words of `normal`, for a contact with an obstacle, a slider and a pair.
 constexpr std::array obstacle_normals = {GeometryConfig::Normal::obstacle, GeometryConfig::Normal::facet,
                                          GeometryConfig::Normal::shape};
+constexpr std::array slider_normals = {GeometryConfig::Normal::facet, GeometryConfig::Normal::shape};
 constexpr std::array pair_normals = {GeometryConfig::Normal::facet, GeometryConfig::Normal::shape,
                                      GeometryConfig::Normal::obstacle};
 constexpr auto normal_hint = "one number or formula per dimension, out of the body";
@@ -54,6 +55,14 @@ void read_normal(const TableReader& table, std::span<const GeometryConfig::Norma
     geometry.direction.push_back(number_text(item));
   }
   if (is_zero) throw InputError(node->where, "has no length", "a direction out of the body, such as [0, -1]");
+}
+
+void read_name(const TableReader& table, std::string_view key, std::string& name, Where& where)
+{
+  const Node* node = table.find(key);
+  if (node == nullptr) return;
+  name = to_text(*node);
+  where = node->where;
 }
 
 void refuse_gap(const TableReader& table, std::string_view why)
@@ -107,24 +116,30 @@ std::vector<Key> pair_geometry_keys()
           {"normal", data(normal_hint) | one_of({"facet", "slave", "master"})}};
 }
 
+std::vector<Key> slider_geometry_keys()
+{
+  return {{"shape", text()}, {"normal", data(normal_hint) | one_of({"facet", "shape"})}};
+}
+
 GeometryConfig read_obstacle_geometry(const TableReader& table)
 {
   using Normal = GeometryConfig::Normal;
   GeometryConfig geometry{.where = table.where()};
-  const auto read_name = [&](std::string_view key, std::string& name, Where& where)
-  {
-    if (const Node* node = table.find(key))
-    {
-      name = to_text(*node);
-      where = node->where;
-    }
-  };
-  read_name("obstacle", geometry.obstacle, geometry.obstacle_where);
-  read_name("shape", geometry.shape, geometry.shape_where);
+  read_name(table, "obstacle", geometry.obstacle, geometry.obstacle_where);
+  read_name(table, "shape", geometry.shape, geometry.shape_where);
   read_normal(table, obstacle_normals, geometry);
   require_for(geometry, Normal::obstacle, geometry.obstacle, "name an obstacle: obstacle = \"floor\"");
   require_for(geometry, Normal::shape, geometry.shape, "name a shape: shape = \"hole\"");
   if (!geometry.obstacle.empty()) refuse_gap(table, "an obstacle");
+  return geometry;
+}
+
+GeometryConfig read_slider_geometry(const TableReader& table)
+{
+  GeometryConfig geometry{.where = table.where()};
+  read_name(table, "shape", geometry.shape, geometry.shape_where);
+  read_normal(table, slider_normals, geometry);
+  require_for(geometry, GeometryConfig::Normal::shape, geometry.shape, "name a shape: shape = \"hole\"");
   return geometry;
 }
 

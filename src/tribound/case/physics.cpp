@@ -81,15 +81,22 @@ const Table& boundary_table()
 {
   static const Table table{
       .name = "boundary.NAME",
-      .keys = {{"displacement",
-                vector_of(datum() | one_of({"free"}),
-                          "one number, formula or \"free\" per dimension, such as [0, \"free\"]")},
-               {"traction", data()},
-               {"pressure", datum()},
-               {"contact", keys_of(obstacle_contact_table())},
-               {"interface", keys_of(obstacle_interface_table())}},
-      .relations = {{.key = "contact", .excludes = {"displacement", "traction", "pressure", "interface"}},
-                    {.key = "interface", .excludes = {"displacement", "traction", "pressure"}}}};
+      .keys = std::vector<Key>{{"displacement",
+                                vector_of(
+                                    datum() | one_of({"free"}),
+                                    "one number, formula or \"free\" per dimension, such as [0, \"free\"]")},
+                               {"traction", data()},
+                               {"pressure", datum()},
+                               {"contact", keys_of(obstacle_contact_table())},
+                               {"interface", keys_of(obstacle_interface_table())},
+                               {"slider", datum()}} +
+              slider_geometry_keys(),
+      .relations = {
+          {.key = "contact", .excludes = {"displacement", "traction", "pressure", "interface", "slider"}},
+          {.key = "interface", .excludes = {"displacement", "traction", "pressure", "slider"}},
+          {.key = "slider", .excludes = {"displacement", "traction", "pressure"}},
+          {.key = "shape", .needs = {"slider"}},
+          {.key = "normal", .needs = {"slider"}}}};
   return table;
 }
 
@@ -115,6 +122,15 @@ void read_memory(const Node& node, BoundaryConfig& boundary)
 {
   const TableReader table(node, obstacle_interface_table());
   set_obstacle(table, read_interface(table, problem::Field(0.0, node.where)), boundary);
+}
+
+/// `slider`: the displacement along the normal is given, in tension, too.
+void read_slider(const TableReader& table, BoundaryConfig& boundary)
+{
+  problem::Contact contact(problem::Slider(), problem::Field(0.0, table.find("slider")->where));
+  table.read("slider", *contact.gap);
+  boundary.contact = std::move(contact);
+  boundary.geometry = read_slider_geometry(table);
 }
 
 /// The sides: slave and master, or a joint.
@@ -182,13 +198,16 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 {
   const auto fail = [&](std::string_view key, const std::string& problem, const std::string& hint)
   { throw InputError(table.find(key)->where, problem, hint); };
-  for (const std::string_view kind : {"contact", "interface"})
+  for (const std::string_view kind : {"contact", "interface", "slider"})
     if (const Node* other = table.excluded_by(kind))
       throw InputError(
           other->where, fmt::format("stands beside {} on the same boundary", kind),
           "a part of the boundary is either in contact or has displacement, traction and pressure; "
           "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
           "interface");
+  for (const std::string_view key : {"shape", "normal"})
+    if (table.has(key) && !table.has("slider"))
+      fail(key, "belongs to a slider", "slider = 0, or " + std::string(key) + " in the table of the contact");
   if (boundary.displacement.empty()) return;
 
   const auto is_fixed = [](const std::optional<problem::Field>& component) { return component.has_value(); };
@@ -212,7 +231,7 @@ BoundaryConfig read_boundary(const Entry& entry)
   if (std::get<Node::Table>(entry.node.value).empty())
     throw InputError(
         entry.where, "nothing is given on this boundary",
-        "displacement, traction, pressure, contact or interface; traction-free is traction = [0, 0]");
+        "displacement, traction, pressure, contact, interface or slider; traction-free is traction = [0, 0]");
   BoundaryConfig boundary;
   boundary.name = entry.name;
   boundary.where = entry.where;
@@ -227,6 +246,7 @@ BoundaryConfig read_boundary(const Entry& entry)
     read_obstacle(*contact, boundary);
   }
   if (interface != nullptr) read_memory(*interface, boundary);
+  if (table.has("slider") && !boundary.contact) read_slider(table, boundary);
   check_boundary(table, boundary);
   return boundary;
 }

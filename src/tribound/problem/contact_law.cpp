@@ -72,6 +72,11 @@ std::string Tresca::words(const Units& units) const
   return "Tresca friction, threshold " + problem::words(threshold, units.behind(UnitOf::stress));
 }
 
+std::string Slider::words(const Units& /*units*/) const
+{
+  return "slider: no motion along the normal, none held across it";
+}
+
 std::string Tied::words(const Units& /*units*/) const
 {
   return "tied";
@@ -132,6 +137,8 @@ Response<dim> respond_to(const L& law, const LawPoint<dim>& point, const Point<d
   Response<dim> response;
   if constexpr (std::same_as<L, Tied>)
     response = {effective, std::numeric_limits<double>::infinity(), ContactStatus::tied};
+  else if constexpr (std::same_as<L, Slider>)
+    response = {effective.dot(point.normal) * point.normal, 0, ContactStatus::slip};
   else if constexpr (has_bond<L>)
   {
     const InterfaceResponse<dim> of_bond = problem::respond<dim>(law, point, effective);
@@ -152,6 +159,8 @@ Tensor<dim> tangent_effectively(const ContactLaw& law, const LawPoint<dim>& poin
       {
         if constexpr (std::same_as<L, Tied>)
           return Tensor<dim>::Identity();
+        else if constexpr (std::same_as<L, Slider>)
+          return point.normal * point.normal.transpose();
         else if constexpr (has_bond<L>)
           return problem::respond<dim>(l, point, P).derivative;
         else
@@ -178,6 +187,13 @@ InterfaceResponse<dim> advance_effectively(const ContactLaw& law, const LawPoint
                   .damage_gradient = Point<dim>::Zero(),
                   .slip_limit = std::numeric_limits<double>::infinity(),
                   .status = ContactStatus::tied};
+        else if constexpr (std::same_as<L, Slider>)
+          return {.traction = P.dot(point.normal) * point.normal,
+                  .derivative = point.normal * point.normal.transpose(),
+                  .state = point.state,
+                  .damage_gradient = Point<dim>::Zero(),
+                  .slip_limit = 0,
+                  .status = ContactStatus::slip};
         else
           return problem::respond<dim>(Joint{.coefficient = l.cone().coefficient}, point, P);
       },
@@ -292,8 +308,8 @@ std::span<const LawKind> law_kinds()
 
 std::span<const LawKind> obstacle_law_kinds()
 {
-  static_assert(kinds.back().name == Tied::name);
-  return std::span(kinds).first<kinds.size() - 1>();
+  static_assert(kinds[kinds.size() - 2].name == Slider::name && kinds.back().name == Tied::name);
+  return std::span(kinds).first<kinds.size() - 2>();
 }
 
 template Response<2> respond(const ContactLaw&, const LawPoint<2>&, const Point<2>&, double);

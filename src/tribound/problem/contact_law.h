@@ -41,6 +41,7 @@ struct FrictionCone
   const Field* strength = nullptr;  ///< s(x) >= 0, stress; null for 0
   double coefficient = 0;           ///< mu_F >= 0
   bool is_tied = false;             ///< it holds anything, tension too
+  bool is_bilateral = false;        ///< [u]^n = g: it holds tension along n, too
   bool is_bonded = false;           ///< at first it holds more than this, until it breaks
   bool holds_tension = false;       ///< the bond does
 
@@ -110,6 +111,18 @@ struct Coulomb
   [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
+/// [u]^n = g, in tension, too, and |sigma^t| = 0: T(P) = P^n n.
+struct Slider
+{
+  static constexpr std::string_view name = "slider";
+  static constexpr std::array<LawKey, 0> keys = {};
+  static constexpr bool is_minimum = true;
+
+  explicit Slider(std::span<const Field> = {}) {}
+  [[nodiscard]] FrictionCone cone() const { return {.is_bilateral = true}; }
+  [[nodiscard]] std::string words(const Units& units = {}) const;
+};
+
 /// [u] = 0, only between bodies: T(P) = P.
 struct Tied
 {
@@ -118,7 +131,7 @@ struct Tied
   static constexpr bool is_minimum = true;
 
   explicit Tied(std::span<const Field> = {}) {}
-  [[nodiscard]] FrictionCone cone() const { return {.is_tied = true}; }
+  [[nodiscard]] FrictionCone cone() const { return {.is_tied = true, .is_bilateral = true}; }
   [[nodiscard]] std::string words(const Units& units = {}) const;
 };
 
@@ -193,11 +206,11 @@ concept FrictionLaw = Law<L> && std::constructible_from<L, std::span<const Field
   {std::span<const LawKey>(L::keys)};
 };
 
-using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Tied, JointLaw, MixedLaw, EndoLaw>;
+using ContactLaw = std::variant<Frictionless, Tresca, Coulomb, Slider, Tied, JointLaw, MixedLaw, EndoLaw>;
 
 /// name() of all, in this order.
-inline constexpr std::array law_names = {Frictionless::name, Tresca::name,   Coulomb::name, Tied::name,
-                                         JointLaw::name,     MixedLaw::name, EndoLaw::name};
+inline constexpr std::array law_names = {Frictionless::name, Tresca::name,   Coulomb::name,  Slider::name,
+                                         Tied::name,         JointLaw::name, MixedLaw::name, EndoLaw::name};
 static_assert(law_names.size() == std::variant_size_v<ContactLaw>);
 
 /// The following functions include the water in a joint: with T_e, the effective traction of the law without
@@ -266,7 +279,7 @@ struct LawKind
   ContactLaw (*make)(std::span<const Field> values);  ///< a value for each key
 };
 
-/// All laws without bond, in the order of the variant; and those of contact with an obstacle.
+/// All laws without bond, in the order of the variant; and those of unilateral contact with an obstacle.
 [[nodiscard]] std::span<const LawKind> law_kinds();
 [[nodiscard]] std::span<const LawKind> obstacle_law_kinds();
 

@@ -61,6 +61,8 @@ std::vector<std::string> companions(const Row& row)
   if (row.name() == "quantity.0.point" || row.name() == "quantity.0.ramp")
     return {"quantity.0.kind=contact_moment"};
   if (row.key == "goal_tolerance") return {"quantity=[{kind=\"energy\"}]", "adapt.goal=energy"};
+  if (row.table == "boundary.top" && (row.key == "normal" || row.key == "shape"))
+    return {"boundary.top.slider=0"};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   return {};
 }

@@ -79,6 +79,9 @@ std::string describe_law(const problem::Problem<dim>& problem)
   for (const auto& pair : problem.pairs()) laws.push_back(pair.contact.law);
   if (std::ranges::all_of(laws, [](const auto& law) { return cone(law).is_tied; }))
     return "linear elasticity of bodies tied to each other: the solution exists and is unique";
+  if (std::ranges::all_of(laws, [](const auto& law) { return cone(law).is_bilateral; }))
+    return "linear elasticity with sliders: the solution exists and is unique, but for motions without "
+           "stress";
   if (std::ranges::any_of(laws, [](const auto& law) { return cone(law).is_bonded; }))
     return "cohesive: existence and uniqueness are not known once the interface softens; loading without "
            "softening, with a given friction threshold: unique";
@@ -116,6 +119,9 @@ std::vector<std::string> outside_of_pairs(const problem::Problem<dim>& problem)
       "the facets of both sides are flat; between them the geometric gap is part of the data"};
   if (std::ranges::any_of(problem.pairs(), [](const auto& pair) { return cone(pair.contact.law).is_tied; }))
     outside.emplace_back("tied interfaces are not opened: tension is transmitted");
+  if (std::ranges::any_of(problem.pairs(), [](const auto& pair)
+                          { return std::holds_alternative<problem::Slider>(pair.contact.law); }))
+    outside.emplace_back("sliders are not opened: tension along their normals is transmitted");
   return outside;
 }
 

@@ -114,6 +114,7 @@ Kinks KinkFinder<dim>::operator()(const problem::ContactLaw& law, std::span<cons
                                   double noise) const
 {
   const problem::FrictionCone friction = cone(law);
+  if (friction.is_bilateral) return {.lowest = -std::numeric_limits<double>::infinity()};  // T is linear
   Rows<dim> at_points(p.size());
   const bool turns = normals.size() > 1;
   for (std::size_t q = 0; q < p.size(); ++q)

@@ -31,7 +31,7 @@ bool has_no_traction_at_rest(const contact::NitscheForm<dim>& form, std::size_t 
   const bool remembers = std::ranges::any_of(form.contact_points(k),
                                              [](const auto& point) { return !point.state.slip.isZero(0); });
   const problem::FrictionCone law = problem::cone(contact.law);
-  if (remembers || contact.water || law.is_tied || law.is_bonded) return false;
+  if (remembers || contact.water || law.is_bilateral || law.is_bonded) return false;
   const contact::SimplexMap<dim - 1, dim> map = contact::simplex_map(form.space().mesh(), segment.slave);
   const fem::Part<dim - 1> whole = fem::reference_simplex<dim - 1>();
   if (contact.gap)

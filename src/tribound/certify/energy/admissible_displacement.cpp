@@ -56,6 +56,7 @@ FacetState facet_state(const contact::NitscheForm<dim>& form, std::span<const Po
   const problem::FrictionCone cone = problem::cone(form.segments()[k].contact->law);
   FacetState state;
   if (cone.is_tied) return {Extent::everywhere, Extent::everywhere, 1, 1};
+  if (cone.is_bilateral) return {Extent::everywhere, Extent::nowhere, 1, 0};
   constexpr double rounding = 1e-12;  // of T^n where it is 0, and of |T^t| where it is at the limit
   int n_closed = 0;
   int n_sticking = 0;
@@ -180,7 +181,7 @@ class ControlPoints
           result, [&](const ControlCondition<dim>& other) { return (other.normal - normal).norm() <= same; });
       if (found == result.end()) found = result.insert(found, {.normal = normal, .gap = gap});
       found->gap = std::min(found->gap, gap);
-      const bool is_bound = !is_beside || problem::cone(form_.segments()[k].contact->law).is_tied;
+      const bool is_bound = !is_beside || problem::cone(form_.segments()[k].contact->law).is_bilateral;
       found->closed = found->closed || (is_bound && holds(states_[k].closed, transition_is_closed));
       found->sticks = found->sticks || (is_bound && holds(states_[k].sticks, transition_is_closed));
       found->pressure += states_[k].pressure;
@@ -218,7 +219,8 @@ std::vector<double> with_corrections(const fem::LagrangeSpace<dim>& space, const
   return v;
 }
 
-/// The largest coefficient of [v]^n - g_h; between tied bodies that of |[v]|.
+/// The largest coefficient of [v]^n - g_h, of sliders that of its absolute value, between tied bodies of
+/// |[v]|.
 template <int dim>
 double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
               std::span<const double> v)
@@ -227,11 +229,14 @@ double excess(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& 
   for (std::size_t k = 0; k < facets.size(); ++k)
   {
     const std::vector<Point<dim>> coefficients = facets.turned(k, facets.coefficients(k, v));
-    const bool is_tied = problem::cone(form.segments()[k].contact->law).is_tied;
+    const problem::FrictionCone cone = problem::cone(form.segments()[k].contact->law);
     for (std::size_t j = 0; j < coefficients.size(); ++j)
-      largest =
-          std::max(largest, is_tied ? coefficients[j].norm()
-                                    : facets.frames().normal(k).dot(coefficients[j]) - facets.gap(k)[j]);
+    {
+      double beyond = facets.frames().normal(k).dot(coefficients[j]) - facets.gap(k)[j];
+      if (cone.is_bilateral) beyond = std::abs(beyond);
+      if (cone.is_tied) beyond = coefficients[j].norm();
+      largest = std::max(largest, beyond);
+    }
   }
   return form.space().mesh().ranks().max(largest);
 }

@@ -52,6 +52,11 @@ ContactSlack<dim>::ContactSlack(const BoundedState<dim>& state)
       set_tied(k);
       continue;
     }
+    if (problem::cone(state.form.segments()[k].contact->law).is_bilateral)
+    {
+      set_slider(k);
+      continue;
+    }
     set_normal(k);
     set_tangential(k);
   }
@@ -62,6 +67,13 @@ void ContactSlack<dim>::set_tied(std::size_t k)
 {
   is_pressed_[k] = is_held_[k] = 1;
   std::fill_n(slack_.begin() + k * n_, n_, Slack{.normal_r = HUGE_VAL, .tangential_r = HUGE_VAL});
+}
+
+template <int dim>
+void ContactSlack<dim>::set_slider(std::size_t k)
+{
+  is_pressed_[k] = 1;
+  std::fill_n(slack_.begin() + k * n_, n_, Slack{.tangential_y = HUGE_VAL, .normal_r = HUGE_VAL});
 }
 
 template <int dim>

@@ -48,6 +48,7 @@ class ContactSlack
 
  private:
   void set_tied(std::size_t k);
+  void set_slider(std::size_t k);
   void set_normal(std::size_t k);
   void set_tangential(std::size_t k);
 

@@ -64,6 +64,14 @@ std::string obstacles_unfit(const contact::NitscheForm<dim>& form)
   { return problem::cone(segment.contact->law).is_tied && !contact::is_whole(mesh, segment); };
   if (mesh.ranks().any(std::ranges::any_of(form.segments(), is_torn)))
     return "meshes of tied bodies do not match";
+  const auto slides = [](const contact::ContactSegment<dim>& segment)
+  { return std::holds_alternative<problem::Slider>(segment.contact->law); };
+  if (mesh.ranks().any(std::ranges::any_of(form.segments(), [&](const auto& segment)
+                                           { return slides(segment) && segment.varying_normal != nullptr; })))
+    return "the direction of a slider varies along facets";
+  if (mesh.ranks().any(std::ranges::any_of(form.segments(), [&](const auto& segment)
+                                           { return slides(segment) && !contact::is_whole(mesh, segment); })))
+    return "meshes of bodies joined by a slider do not match";
   return {};
 }
 

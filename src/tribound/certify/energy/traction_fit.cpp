@@ -13,7 +13,9 @@ template <int dim>
 bool TractionCone<dim>::contains(const Point<dim>& t, double tolerance) const
 {
   const double n = t.dot(normal);
-  return is_tied || (n <= tolerance && (t - n * normal).norm() <= limit - coefficient * n + tolerance);
+  if (is_tied) return true;
+  if (is_bilateral) return (t - n * normal).norm() <= tolerance;
+  return n <= tolerance && (t - n * normal).norm() <= limit - coefficient * n + tolerance;
 }
 
 template <int dim>
@@ -21,6 +23,7 @@ Point<dim> TractionCone<dim>::nearest(const Point<dim>& t) const
 {
   if (is_tied) return t;
   const double n = t.dot(normal);
+  if (is_bilateral) return n * normal;
   const Point<dim> tangential = t - n * normal;
   const double length = tangential.norm();
   if (coefficient == 0)
@@ -39,6 +42,7 @@ Tensor<dim> TractionCone<dim>::derivative(const Point<dim>& t) const
   const Point<dim> tangential = t - n * normal;
   const double length = tangential.norm();
   const Tensor<dim> along_normal = normal * normal.transpose();
+  if (is_bilateral) return normal * normal.transpose();
   const Tensor<dim> in_plane = Tensor<dim>::Identity() - along_normal;
   const double pushes = n < 0 ? 1 : 0;
   if (coefficient == 0 && length <= limit) return pushes * along_normal + in_plane;
@@ -128,7 +132,8 @@ std::vector<TractionCone<dim>> TractionFit<dim>::cones(std::size_t k) const
   std::vector<TractionCone<dim>> cones;
   cones.reserve(thresholds.size());
   const problem::FrictionCone cone = problem::cone(law);
-  for (const double s : thresholds) cones.push_back({frames_.normal(k), s, cone.coefficient, cone.is_tied});
+  for (const double s : thresholds)
+    cones.push_back({frames_.normal(k), s, cone.coefficient, cone.is_tied, cone.is_bilateral});
   return cones;
 }
 

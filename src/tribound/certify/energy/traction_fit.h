@@ -17,7 +17,7 @@ namespace tribound::certify
 {
 
 /// The admissible values of a traction coefficient: |t^t| <= limit - coefficient t^n, t^n <= 0; if
-/// coefficient > 0, limit = 0. Between tied bodies all values.
+/// coefficient > 0, limit = 0. Of sliders all with t^t = 0, between tied bodies all values.
 template <int dim>
 struct TractionCone
 {
@@ -25,6 +25,7 @@ struct TractionCone
   double limit;
   double coefficient;
   bool is_tied = false;
+  bool is_bilateral = false;
 
   [[nodiscard]] bool contains(const Point<dim>& t, double tolerance) const;
   /// The nearest point.

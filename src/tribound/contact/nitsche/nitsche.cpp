@@ -1,12 +1,19 @@
 #include "tribound/contact/nitsche/nitsche.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
+#include "tribound/base/error.h"
 #include "tribound/base/parallel.h"
 #include "tribound/fem/evaluation.h"
+#include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
 {
@@ -48,6 +55,28 @@ NitscheForm<dim> NitscheForm<dim>::with_gamma0(double gamma0) const
   return other;
 }
 
+namespace
+{
+
+/// Throws where a slider's direction is nearly along the facet: it would hold what the facet cannot push.
+template <int dim>
+void check_direction(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment, const Point<dim>& x,
+                     const Point<dim>& direction)
+{
+  constexpr double least = 0.3;
+  if (!std::holds_alternative<problem::Slider>(segment.contact->law)) return;
+  const mesh::BoundaryFacet& facet = segment.slave.facet;
+  const double along = direction.dot(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
+  if (along < least)
+    throw InputError({},
+                     fmt::format("the slider on \"{}\" acts at {} degrees from the normal of the facet at {}",
+                                 mesh.boundary_names()[facet.tag],
+                                 std::lround(180 / std::numbers::pi * std::acos(along)), mesh::describe(x)),
+                     "a normal out of the body, within 72 degrees of those of the facets");
+}
+
+}  // namespace
+
 template <int dim>
 std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
 {
@@ -61,9 +90,10 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
     for (int q = 0; q < facet_rule().size(); ++q)
     {
       const Point<dim> x = map(facet_rule().points[q]);
+      const Point<dim> normal = segment.normal_at(x);
+      check_direction<dim>(space_->mesh(), segment, x, normal);
       const auto [gap, strength, water] = data_.contact(segment, k, facet_rule().points[q]);
-      points.push_back(
-          {x, segment.det() * facet_rule().weights[q], segment.normal_at(x), gap, strength, water, fresh});
+      points.push_back({x, segment.det() * facet_rule().weights[q], normal, gap, strength, water, fresh});
     }
   }
   return points;
@@ -141,7 +171,8 @@ Point<dim> NitscheForm<dim>::respond(std::size_t k, int q, const Point<dim>& aug
 template <int dim>
 bool NitscheForm<dim>::starts_open(std::size_t k, int q) const
 {
-  return has_bonds_ && !cone(segments_[k].contact->law).is_tied && contact_points(k)[q].state.damage >= 1;
+  return has_bonds_ && !cone(segments_[k].contact->law).is_bilateral &&
+         contact_points(k)[q].state.damage >= 1;
 }
 
 template <int dim>

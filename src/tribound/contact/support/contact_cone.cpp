@@ -43,7 +43,7 @@ ContactCone<dim>::ContactCone(const NitscheForm<dim>& form, const Assembly<dim>&
                               const std::vector<int>& coefficients, const auto& jump)
   {
     const problem::FrictionCone law = problem::cone(segment.contact->law);
-    if (law.glues()) return;  // the motions satisfy the tie
+    if (law.glues() || law.is_bilateral) return;  // the motions satisfy it
     const Eigen::MatrixXd jumps = jump * motions(coefficients, Eigen::all);
     const auto add = [&](const Point<dim>& push)
     {

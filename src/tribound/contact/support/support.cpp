@@ -105,8 +105,11 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
       }
     }
   add_segments(mesh_, segments_, assembly_, grams,
-               [](const problem::FrictionCone& law, const Point<dim>&, const auto& z)
-               { return law.glues() ? Eigen::MatrixXd(z) : Eigen::MatrixXd(0, z.cols()); });
+               [](const problem::FrictionCone& law, const Point<dim>& n, const auto& z)
+               {
+                 if (law.glues()) return Eigen::MatrixXd(z);
+                 return law.is_bilateral ? Eigen::MatrixXd(n.transpose() * z) : Eigen::MatrixXd(0, z.cols());
+               });
   return grams.sum();
 }
 
@@ -117,7 +120,7 @@ Eigen::MatrixXd Support<dim>::contact_gram(bool with_friction) const
   add_segments(mesh_, segments_, assembly_, grams,
                [&](const problem::FrictionCone& law, const Point<dim>& n, const auto& z)
                {
-                 if (law.glues()) return Eigen::MatrixXd(0, z.cols());
+                 if (law.glues() || law.is_bilateral) return Eigen::MatrixXd(0, z.cols());
                  return with_friction && law.resists_sliding() ? Eigen::MatrixXd(z)
                                                                : Eigen::MatrixXd(n.transpose() * z);
                });
