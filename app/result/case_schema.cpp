@@ -141,6 +141,11 @@ class Schema
       types.emplace_back(value.is_integer ? "integer" : "number");
       set_limits(*value.number, value.is_integer, schema);
     }
+    if (value.number && !value.text && !value.is_literal)  // a formula of parameters
+    {
+      types.emplace_back("string");
+      schema["pattern"] = "[A-Za-z_]";
+    }
     if (value.text)
     {
       types.emplace_back("string");

@@ -12,6 +12,7 @@
 #include "tribound/case/history_reader.h"
 #include "tribound/case/method_reader.h"
 #include "tribound/case/node.h"
+#include "tribound/case/parameters.h"
 #include "tribound/case/physics.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/region_reader.h"
@@ -176,6 +177,7 @@ const Table& case_table()
           std::vector<Key>{{"title", text()},
                            {"degree", integer_from(1, "the polynomial degree p", fem::max_degree)},
                            {"units", keys_of(units_table())},
+                           {"parameters", keys_of(parameters_table())},
                            {"mesh", keys_of(mesh_table()), fmt::format("[mesh] with {}", mesh_hint)},
                            {"material", keys_of(material_table()), "[material] with E = 210e9 and nu = 0.3"},
                            {"load", keys_of(load_table())},
@@ -231,10 +233,11 @@ std::string friction_name(const Config& config)
 Config parse_config(std::string_view text, std::string name, std::span<const std::string> overrides)
 {
   Node document = parse_toml(text, name);
-  for (const std::string& assignment : overrides) apply_override(document, assignment);
+  for (const std::string& assignment : overrides)
+    apply_override(document, parameter_assignment(document, assignment));
   // The document itself has no position.
   document.where.line = document.where.column = 0;
-  Config config = read_document(document, std::move(name));
+  Config config = read_document(with_values(document, read_parameters(document)), std::move(name));
   config.effective = effective_case(std::move(document), config, overrides);
   return config;
 }

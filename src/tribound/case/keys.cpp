@@ -32,9 +32,15 @@ Value integer_from(double lower, std::string hint, double upper)
           .hint = std::move(hint)};
 }
 
+Value formula()
+{
+  return {.text = true, .is_formula = true};
+}
+
 Value datum()
 {
   return {.text = true,
+          .is_formula = true,
           .number = Interval{.lower = -reasonable.upper,
                              .upper = reasonable.upper,
                              .includes_lower = true,
@@ -85,6 +91,7 @@ Value operator|(Value one, const Value& other)
 {
   one.truth = one.truth || other.truth;
   one.text = one.text || other.text;
+  one.is_formula = one.is_formula || other.is_formula;
   one.words.insert(one.words.end(), other.words.begin(), other.words.end());
   if (!one.number)
   {

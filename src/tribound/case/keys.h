@@ -36,9 +36,11 @@ struct Value
 {
   bool truth = false;                ///< true or false
   bool text = false;                 ///< any string: a name, a file, a formula
+  bool is_formula = false;           ///< the string
   std::vector<std::string> words{};  ///< strings with a meaning of their own
   std::optional<Interval> number{};
   bool is_integer = false;     ///< the number
+  bool is_literal = false;     ///< the number; no formula of parameters
   std::vector<Value> items{};  ///< of an array: what each entry accepts; empty: no array
   const Table* table = nullptr;
   std::size_t least = 0;  ///< characters or entries
@@ -90,6 +92,7 @@ struct Table
 [[nodiscard]] Value number_in(Interval interval, std::string hint = {});
 [[nodiscard]] Value integer_from(double lower, std::string hint,
                                  double upper = std::numeric_limits<double>::infinity());
+[[nodiscard]] Value formula();
 /// A number or a formula.
 [[nodiscard]] Value datum();
 [[nodiscard]] Value nonnegative_datum(std::string hint = {});

@@ -66,6 +66,7 @@ Value kind_value(Kind kind)
     case Kind::cylinder:
       return keys_of(cylinder_options().table());
     case Kind::distance:
+      return formula();
     case Kind::surface:
       break;
     case Kind::mesh:

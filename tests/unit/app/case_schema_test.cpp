@@ -59,11 +59,14 @@ TEST(CaseSchema, SaysWhatTheParserChecks)
   EXPECT_EQ(adapt["properties"]["theta"]["default"], 0.6);
   EXPECT_EQ(adapt["properties"]["marking"]["enum"], io::Json({"doerfler", "maximum", "uniform"}));
   EXPECT_EQ(adapt["properties"]["max_dofs"]["default"], 2'000'000);
-  EXPECT_EQ(schema["properties"]["degree"]["type"], "integer");
+  // Numbers may be formulas of parameters.
+  EXPECT_EQ(schema["properties"]["degree"]["type"], io::Json({"integer", "string"}));
   // A region may bear the name of a key of the material.
   const io::Json& material = schema["properties"]["material"];
   EXPECT_EQ(material["additionalProperties"]["required"], io::Json({"E", "nu"}));
-  EXPECT_EQ(material["properties"]["E"]["type"], io::Json({"number", "object"}));
+  EXPECT_EQ(material["properties"]["E"]["type"], io::Json({"number", "string", "object"}));
+  EXPECT_EQ(schema["properties"]["parameters"]["additionalProperties"]["type"],
+            io::Json({"number", "object"}));
 }
 
 TEST(CaseGuide, ReadsTablesAndSentences)

@@ -64,6 +64,8 @@ std::vector<std::string> companions(const Row& row)
   if (row.table == "boundary.top" && (row.key == "normal" || row.key == "shape"))
     return {"boundary.top.slider=0"};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
+  if (row.name() == "parameters.NAME.value") return {"material.E=\"1 + NAME^2\""};
+  if (row.table == "parameters.NAME") return {"parameters.NAME.value=1", "material.E=NAME"};
   return {};
 }
 
@@ -76,6 +78,8 @@ std::optional<InputError> refusal(const Row& row, const std::string& value)
   std::string text = valid_case(row.table);
   if (row.name() == "mesh.file") text = "mesh.file = " + value + "\nmaterial = { E = 1, nu = 0 }\n";
   if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
+  if (row.table == "boundary.top" && (row.key == "slider" || row.key == "normal" || row.key == "shape"))
+    text = valid_case("");
   if (row.name() == "contact.0.joint") text = valid_case("") + "contact = [{}]\n";
   try
   {
@@ -138,6 +142,11 @@ void try_out_numbers(const Row& row)
   {
     end_point(match[1], true, -1);
     end_point(match[2], true, 1);
+  }
+  else if (row.type == "number")
+  {
+    expect_accepted(row, "-2.5");
+    expect_refused(row, "inf");
   }
   else
     FAIL() << row.name() << ": the type \"" << row.type << "\" is not known here";
@@ -232,7 +241,7 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
     documented[row.table].insert(row.key);
     if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
   }
-  documented[""].insert({"boundary", "contact", "obstacle", "quantity", "shape"});
+  documented[""].insert({"boundary", "contact", "obstacle", "parameters", "quantity", "shape"});
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 
