@@ -18,10 +18,13 @@
 
 #include "app/command/commands.h"
 #include "app/console/text.h"
+#include "app/page/report_page.h"
 #include "app/result/sweep.h"
+#include "app/shared_file.h"
 #include "tribound/base/sha256.h"
 #include "tribound/case/config.h"
 #include "tribound/case/node.h"
+#include "tribound/case/parameters.h"
 #include "tribound/case/sweep_values.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/output_directory.h"
@@ -80,6 +83,18 @@ case_file::SweepTable table_of(const SweepRequest& request)
   return case_file::sweep_rows(io::read_text(file), file);
 }
 
+/// The keys, parameters with their label and unit: "water level [m]".
+std::vector<std::string> titles_of(const std::vector<std::string>& keys, const case_file::Config& config)
+{
+  std::vector<std::string> titles = keys;
+  for (const auto& [name, value, label, unit] :
+       case_file::read_parameters(case_file::parse_toml(config.effective.text, config.file)))
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      if (keys[i] == name)
+        titles[i] = (label.empty() ? name : label) + (unit.empty() ? "" : " [" + unit + "]");
+  return titles;
+}
+
 /// Hashes each mesh file once for all runs. Files read by the mesh file, such as the .step of a .geo, are not
 /// included.
 class MeshHashes
@@ -109,7 +124,8 @@ class Sweep
     const case_file::SweepTable table = table_of(request);
     const case_file::Config config = case_file::read_config(file, request.overrides);
     directory_ = config.output.directory / "sweep";
-    record_ = {config.title, file, table.keys, {}};
+    has_page_ = config.output.report;
+    record_ = {config.title, file, table.keys, {}, titles_of(table.keys, config)};
     MeshHashes mesh_hash;
     for (const auto& values : table.rows)
     {
@@ -146,7 +162,7 @@ class Sweep
       }
     limit_threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / request_.jobs));
     const std::atomic<bool>& stop = stop_on_signals();
-    write_sweep(directory_, record_);
+    write();
     while (next_ < record_.runs.size() || !running_.empty())
     {
       if (stop && !interrupted_)
@@ -167,7 +183,7 @@ class Sweep
       else
         std::this_thread::sleep_for(10ms);
     }
-    write_sweep(directory_, record_);
+    write();
     print(line("results", (directory_ / "sweep.csv").string()));
     return exit_code();
   }
@@ -213,8 +229,14 @@ class Sweep
       run.status = "not run";
       run.reason.clear();
     }
-    write_sweep(directory_, record_);
+    write();
     print(sweep_line(record_, run));
+  }
+
+  void write() const
+  {
+    write_sweep(directory_, record_);
+    if (has_page_) write_sweep_page(find_shared_file("report.html"), directory_, record_);
   }
 
   void end_all() const
@@ -234,6 +256,7 @@ class Sweep
 
   const SweepRequest& request_;
   std::filesystem::path directory_;
+  bool has_page_ = false;
   SweepRecord record_;
   std::map<pid_t, SweepRun*> running_;
   std::size_t next_ = 0;

@@ -8,6 +8,7 @@
 #include "app/page/packed_array.h"
 #include "app/page/page_level.h"
 #include "app/result/study.h"
+#include "app/result/sweep.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/error_bars.h"
@@ -115,6 +116,18 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
               {"components", components_json(run_kind(study))},
               {"machine", machine_json()},
               {"files", files_json(directory, study_files(directory, study))}});
+}
+
+void write_sweep_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
+                      const SweepRecord& sweep)
+{
+  const PageTemplate page(page_template);
+  if (page.empty()) return;
+  std::vector<std::string> files = {"sweep.csv", "sweep.json"};
+  for (const SweepRun& run : sweep.runs) files.push_back(run.name + "/report.html");
+  page.write(
+      directory / "report.html", "sweep-data",
+      {{"sweep", sweep_object(sweep)}, {"machine", machine_json()}, {"files", files_json(directory, files)}});
 }
 
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file report_page.h
-/// report.html of a run or a study: their data, put into the template of app/page/page_template.h.
+/// report.html of a run, a study or a sweep: their data, put into the template of app/page/page_template.h.
 
 #include <filesystem>
 #include <optional>
@@ -16,8 +16,9 @@
 namespace tribound::app
 {
 
-struct Study;      // of app/result/study.h
-struct PageLevel;  // of app/page/page_level.h
+struct Study;        // of app/result/study.h
+struct SweepRecord;  // of app/result/sweep.h
+struct PageLevel;    // of app/page/page_level.h
 
 /// The comment in the template, and in a page without true errors, that add_true_errors() replaces.
 inline constexpr std::string_view true_errors_marker = "<!-- true errors -->";
@@ -66,5 +67,9 @@ class ReportPage
 /// the variants. Does nothing without a template. Throws WriteError when the file cannot be written.
 void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
                       const Study& study);
+
+/// The same of a sweep, with links to its tables and the pages of its runs.
+void write_sweep_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
+                      const SweepRecord& sweep);
 
 }  // namespace tribound::app

@@ -11,7 +11,9 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/csv.h"
 #include "tribound/io/file/json.h"
+#include "tribound/io/record/facts.h"
 #include "tribound/io/record/level_json.h"
+#include "tribound/io/record/record_json.h"
 
 namespace tribound::app
 {
@@ -84,6 +86,18 @@ void add_reactions(const io::Json& certificate, Figures& figures)
                              row["force"][i].get<double>());
 }
 
+/// With the ends of their intervals, as in history.csv.
+void add_quantities(const io::Json& certificate, Figures& figures)
+{
+  for (const io::Json& quantity : certificate.value("quantities", io::Json::array()))
+  {
+    const std::string name = "quantity." + text_at(quantity, "/name");
+    figures.emplace_back(name, number_at(quantity, "/value"));
+    for (const char* end : {"lower", "upper"})
+      figures.emplace_back(fmt::format("{}.{}", name, end), number_at(quantity, fmt::format("/{}", end)));
+  }
+}
+
 /// The certificate of a run; null where there is none of this case.
 io::Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
 {
@@ -148,6 +162,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
     add_contact(certificate, run.figures);
     add_contact_line(directory / "contact.csv", run.figures);
     add_reactions(certificate, run.figures);
+    add_quantities(certificate, run.figures);
   }
   double seconds = 0;
   const io::Json times = certificate.value("times", io::Json::object());
@@ -198,10 +213,11 @@ std::string sweep_csv(const SweepRecord& sweep)
   return table.text();
 }
 
-std::string sweep_json(const SweepRecord& sweep)
+io::Json sweep_object(const SweepRecord& sweep)
 {
-  io::Json object{
-      {"schema", sweep_schema}, {"title", sweep.title}, {"file", sweep.file}, {"keys", sweep.keys}};
+  io::Json object{{"schema", sweep_schema}, {"program", io::program_json(io::build_facts())},
+                  {"title", sweep.title},   {"file", sweep.file},
+                  {"keys", sweep.keys},     {"titles", sweep.titles}};
   const auto named = std::ranges::find_if(sweep.runs, [](const SweepRun& run) { return !run.units.empty(); });
   object["units"] = named == sweep.runs.end() ? io::Json(nullptr) : io::Json::parse(named->units);
   object["runs"] = io::Json::array();
@@ -217,7 +233,12 @@ std::string sweep_json(const SweepRecord& sweep)
     for (const auto& [name, value] : run.figures) row[name] = io::number_or_null(value);
     object["runs"].push_back(row);
   }
-  return io::json_text(object);
+  return object;
+}
+
+std::string sweep_json(const SweepRecord& sweep)
+{
+  return io::json_text(sweep_object(sweep));
 }
 
 void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep)

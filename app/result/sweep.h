@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/io/file/json_forward.h"
+
 namespace tribound::app
 {
 
@@ -35,6 +37,7 @@ struct SweepRecord
   std::string file;
   std::vector<std::string> keys;
   std::vector<SweepRun> runs;
+  std::vector<std::string> titles{};  ///< of the keys: label and unit of a parameter, else the key
 };
 
 /// Reads status, reason and figures of a run that has ended, from certificate.json and contact.csv in its
@@ -48,6 +51,7 @@ void read_results(const std::filesystem::path& directory, SweepRun& run);
 
 /// A row per run: name, the keys, status, reason, then every figure of any run.
 [[nodiscard]] std::string sweep_csv(const SweepRecord& sweep);
+[[nodiscard]] io::Json sweep_object(const SweepRecord& sweep);
 [[nodiscard]] std::string sweep_json(const SweepRecord& sweep);
 
 /// Writes sweep.csv and sweep.json. Throws WriteError when a file cannot be written.

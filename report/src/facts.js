@@ -90,9 +90,9 @@ function levelTable(run) {
 /** Wall seconds by stage, and the machine. */
 export function timesAndMachine(times, machine, program) {
   const memory = machine.memory > 0 ? `, ${Math.round(machine.memory / 2 ** 30)} GiB of memory` : "";
+  const stages = Object.entries(times).map(([stage, value]) => [stage, seconds(value)]);
   return element("div", { class: "two-columns" },
-    element("div", {}, element("h3", {}, "Times"),
-      definitions(Object.entries(times).map(([stage, value]) => [stage, seconds(value)]))),
+    stages.length > 0 ? element("div", {}, element("h3", {}, "Times"), definitions(stages)) : null,
     element("div", {}, element("h3", {}, "Machine and program"), definitions([
       ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
       ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
@@ -109,6 +109,7 @@ const contents = { "certificate.json": "the whole result, for programs", "conver
   "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
   "series.pvd": "all levels or load steps, for ParaView", "adapted.msh": "the last mesh, for Gmsh",
   "case.toml": "the case as it was solved", "case_effective.toml": "the case as it was solved",
+  "sweep.csv": "a row per run", "sweep.json": "the whole sweep, for programs",
   "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
   "../report.html": "the study that this run belongs to" };
 

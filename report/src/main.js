@@ -4,6 +4,7 @@ import "./style.css";
 import { element } from "./dom.js";
 import { runPage } from "./run.js";
 import { studyPage } from "./study.js";
+import { sweepPage } from "./sweep.js";
 
 /** The content of the script element with this id, or undefined. */
 function embedded(id) {
@@ -24,12 +25,12 @@ function openOnPaper(page) {
 
 async function show() {
   const place = document.getElementById("page");
-  const [run, study] = [embedded("run-data"), embedded("study-data")];
-  if (!run && !study) {
-    place.replaceChildren(element("p", {}, "This is the page without data; tribound run and tribound study fill it."));
+  const [run, study, sweep] = [embedded("run-data"), embedded("study-data"), embedded("sweep-data")];
+  if (!run && !study && !sweep) {
+    place.replaceChildren(element("p", {}, "This is the page without data; tribound run, study and sweep fill it."));
     return;
   }
-  const page = run ? runPage(run, embedded("true-errors")) : studyPage(study);
+  const page = run ? runPage(run, embedded("true-errors")) : study ? studyPage(study) : sweepPage(sweep);
   const { machine, program } = page;
   document.title = `${page.title} \u2013 Tribound`;
   place.replaceChildren(page.header, navigation(page.sections), ...page.sections,

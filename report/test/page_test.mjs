@@ -1,6 +1,6 @@
 // node page_test.mjs <tribound> <folder with playwright-core> <directory for results>
 //
-// Runs cases and a study, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its
+// Runs cases, a study and a sweep, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its
 // driver or the page is missing.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -142,6 +142,27 @@ max_levels = 0
 tolerance = 0.9
 ` };
 
+// The threshold of friction and the pull are varied; the block has a quantity with an error bar.
+const sweep = { command: "sweep", arguments: ["s=0.02:0.04:3", "pull=[0.02, 0.04]"], exit: 0, text: `
+title = "Block, varied"
+degree = 1
+units = { length = "m", force = "kN" }
+mesh = { box = { lower = [0, 0], upper = [2, 1], cells = [4, 2] } }
+${pressedBlock.replace("0.03", '"s"').replace("[0.04, 0.06]", '["pull", 0.06]')}
+[parameters]
+s = { value = 0.03, label = "limit of friction", unit = "kN/m" }
+pull = 0.04
+[[quantity]]
+name = "grip"
+kind = "contact_force"
+boundary = "bottom"
+direction = [1, 0]
+[adapt]
+tolerance = 0.3
+[output]
+vtu = false
+` };
+
 const study = { command: "study", exit: 0, text: `
 title = "Block, studied"
 degree = 1
@@ -157,12 +178,12 @@ dual_norm_dofs = 5_000
 figures = false
 ` };
 
-function solve(name, { command = "run", text, exit }) {
+function solve(name, { command = "run", arguments: more = [], text, exit }) {
   const directory = `${results}/${name}`;
   rmSync(directory, { recursive: true, force: true });
   mkdirSync(directory, { recursive: true });
   writeFileSync(`${directory}/case.toml`, text);
-  const { status, stderr } = spawnSync(program, [command, "case.toml", "--quiet"], { cwd: directory, encoding: "utf8" });
+  const { status, stderr } = spawnSync(program, [command, "case.toml", ...(more.length > 0 ? more : ["--quiet"])], { cwd: directory, encoding: "utf8" });
   assert.equal(status, exit, stderr);
   return `${directory}/out/case`;
 }
@@ -342,6 +363,30 @@ async function checkStudy(browser, directory) {
   await variant.page.close();
 }
 
+/** The page of a sweep: error bars as in its table, a line for each pull, links to the pages of the runs. */
+async function checkSweep(browser) {
+  const directory = `${solve("sweep", sweep)}/sweep`;
+  const url = pathToFileURL(`${directory}/report.html`).href;
+  const { page, complaints, seconds } = await openPage(browser, url);
+  assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
+  assert.match(await page.locator(".verdict").textContent(), /All 6 runs are certified.*0\.02, 0\.03, 0\.04/s);
+  await page.screenshot({ path: `${results}/sweep.png`, fullPage: true });
+  await checkCharts(page, ["#quantities .chart", "#numbers .chart >> nth=0", "#effort .chart >> nth=0"]);
+  assert.equal(await page.locator('#quantities [aria-label="rule"] line').count(), 6);
+  assert.match(await hover(page, "#quantities .chart"), /limit of friction \[kN\/m\] = 0\.0\d, pull =.*0\.0\d.*between .* and .*kN\/m.*run 000\d: certified/s);
+  const bars = JSON.parse(readFileSync(`${directory}/sweep.json`, "utf8")).runs.map((run) => ["", ".lower", ".upper"].map((end) => run[`quantity.grip${end}`]));
+  const table = (await saved(page, "#quantities", "CSV")).toString().trim().split("\n").slice(1).map((line) => line.split(",").slice(-3).map(Number));
+  assert.deepEqual(table.sort(), bars.sort());
+  for (const [value, lower, upper] of bars) assert(lower < upper && lower <= value && value <= upper);
+  const links = await checkLinks(page, directory);
+  for (const link of ["sweep.csv", "sweep.json", "0001/report.html", "0006/report.html"]) assert(links.includes(link), `no link to ${link}`);
+  await checkPrint(page, `${results}/sweep.pdf`);
+  await checkNarrowAndDark(browser, url);
+  assert.deepEqual(complaints, []);
+  report("sweep", directory, seconds);
+  await page.close();
+}
+
 /** What a joint remembers, at each load step. */
 async function checkJoint(browser) {
   const directory = solve("joint", joint);
@@ -398,6 +443,7 @@ try {
   }
   await checkJoint(browser);
   await checkStudy(browser, solve("study", study));
+  await checkSweep(browser);
 } finally {
   await browser.close();
 }
