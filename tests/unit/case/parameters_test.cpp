@@ -1,5 +1,5 @@
 /// @file parameters_test.cpp
-/// `[parameters]`: what takes their values_text, and every mistake.
+/// `[parameters]`: what takes their values, and every mistake.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
