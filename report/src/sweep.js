@@ -131,13 +131,13 @@ function runsSection(sweep, drawn, files) {
 
 /** The overall result. */
 function outcome({ runs }) {
-  const number_of = (...kinds) => runs.filter(({ status }) => kinds.includes(status)).length;
-  const certified = number_of("certified");
-  const waiting = number_of("not run");
+  const runsWith = (...kinds) => runs.filter(({ status }) => kinds.includes(status)).length;
+  const certified = runsWith("certified");
+  const waiting = runsWith("not run");
   if (certified === runs.length) return { tone: "certified", mark: "\u2713", title: runs.length === 1 ? "The run is certified" : `All ${runs.length} runs are certified` };
   const parts = [`${certified} of ${plural(runs.length, "run is", "runs are")} certified`];
   if (waiting > 0) parts.push(`${waiting} not run`);
-  const lost = runs.length - certified - waiting - number_of("budget");
+  const lost = runs.length - certified - waiting - runsWith("budget");
   if (lost > 0) return { tone: "failed", mark: "\u00d7", title: [...parts, `${lost} without a certificate`].join(", ") };
   return { tone: "budget", mark: "!", title: parts.join(", ") };
 }

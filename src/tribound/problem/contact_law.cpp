@@ -180,20 +180,17 @@ InterfaceResponse<dim> advance_effectively(const ContactLaw& law, const LawPoint
       {
         if constexpr (has_bond<L>)
           return problem::respond<dim>(l, point, P);
-        else if constexpr (std::same_as<L, Tied>)
-          return {.traction = P,
-                  .derivative = Tensor<dim>::Identity(),
+        else if constexpr (std::same_as<L, Tied> || std::same_as<L, Slider>)
+        {
+          constexpr bool is_tied = std::same_as<L, Tied>;
+          const Tensor<dim> derivative = tangent_effectively<dim>(law, point, P, 0);
+          return {.traction = derivative * P,
+                  .derivative = derivative,
                   .state = point.state,
                   .damage_gradient = Point<dim>::Zero(),
-                  .slip_limit = std::numeric_limits<double>::infinity(),
-                  .status = ContactStatus::tied};
-        else if constexpr (std::same_as<L, Slider>)
-          return {.traction = P.dot(point.normal) * point.normal,
-                  .derivative = point.normal * point.normal.transpose(),
-                  .state = point.state,
-                  .damage_gradient = Point<dim>::Zero(),
-                  .slip_limit = 0,
-                  .status = ContactStatus::slip};
+                  .slip_limit = is_tied ? std::numeric_limits<double>::infinity() : 0,
+                  .status = is_tied ? ContactStatus::tied : ContactStatus::slip};
+        }
         else
           return problem::respond<dim>(Joint{.coefficient = l.cone().coefficient}, point, P);
       },

@@ -71,7 +71,8 @@ void check_direction(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& seg
     throw InputError({},
                      fmt::format("the slider on \"{}\" acts at {} degrees from the normal of the facet at {}",
                                  mesh.boundary_names()[facet.tag],
-                                 std::lround(180 / std::numbers::pi * std::acos(along)), mesh::describe(x)),
+                                 std::lround(180 / std::numbers::pi * std::acos(std::max(along, -1.0))),
+                                 mesh::describe(x)),
                      "a normal out of the body, within 72 degrees of those of the facets");
 }
 
