@@ -245,6 +245,9 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
     text += line("energy", fmt::format("a(u, u) = {:.8g}{}, ||sigma|| = {:.8g}{}", last.figures.energy,
                                        facts.behind(UnitOf::energy), last.figures.sigma_norm,
                                        facts.behind(UnitOf::stress_norm)));
+    if (const std::optional<double> stored = last.figures.spring_energy)
+      text += line("springs",
+                   fmt::format("(K (u - u_0), u - u_0) = {:.8g}{}", *stored, facts.behind(UnitOf::energy)));
     text += certificate_text(run);
     text += warnings_text(run.warnings);
   }

@@ -41,7 +41,7 @@ function caseText(effective) {
     element("pre", { tabindex: 0 }, text), sha256 ? element("p", { class: "note" }, `SHA-256 ${sha256}`) : null);
 }
 
-/** Loads, reactions and contact forces with their sum, which is zero in equilibrium. */
+/** Loads, reactions, springs and contact forces with their sum, which is zero in equilibrium. */
 function balanceTable(balance, d) {
   if (!balance?.rows?.length) return null;
   const [forces, moments] = [unit("force"), unit("moment")];

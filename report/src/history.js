@@ -32,9 +32,9 @@ function cleared(lines) {
   return lines.map(({ name, values }) => ({ name, values: withoutNoise(values, largest) }));
 }
 
-/** The magnitude of the reaction force on a boundary. */
-function reaction({ balance }, boundary) {
-  const row = balance?.rows.find(({ kind, name }) => kind === "reaction" && name === boundary);
+/** The magnitude of the force of a kind on a boundary. */
+function support({ balance }, { kind, name }) {
+  const row = balance?.rows.find((other) => other.kind === kind && other.name === name);
   return row ? Math.hypot(...row.force) : 0;
 }
 
@@ -51,7 +51,8 @@ function charts(run) {
     { title: "Contact forces", name: "forces", yLabel: "force", yUnit: force, lines: steps[0].contact === null ? [] : [
       of("pressure", (step) => -step.contact.normal), of("tangential", (step) => step.contact.tangential)] },
     { title: "Reactions", name: "reactions", yLabel: "length of the force", yUnit: force, lines: (steps[0].balance?.rows ?? [])
-      .filter(({ kind }) => kind === "reaction").slice(0, colours.length).map(({ name }) => of(name, (step) => reaction(step, name))) },
+      .filter(({ kind }) => kind === "reaction" || kind === "spring").slice(0, colours.length)
+      .map((row) => of(row.kind === "spring" ? `${row.name} (spring)` : row.name, (step) => support(step, row))) },
     { title: "Interface", name: "interface", yLabel: run.d === 2 ? "length" : "area", yUnit: unit("boundary"), lines: [
       of("open", sum("opened")), of("slipping", sum("slipping")), of("broken", sum("broken")), of("breaking", sum("process"))] },
     { title: "Base under water", name: "uplift", yLabel: "force", yUnit: force, lines: [

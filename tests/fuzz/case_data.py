@@ -29,6 +29,7 @@ class Condition:
     traction: list  # Formulas
     pressure: object  # Formula
     contact: dict | None = None  # friction, gap, threshold, coefficient
+    spring: dict | None = None  # normal, tangential, rest
 
 
 @dataclass
@@ -80,11 +81,21 @@ class Case:
                 "threshold": formula(contact.get("threshold", 0)),
                 "coefficient": float(contact.get("coefficient", 0)),
             }
+        spring = own.get("spring")
+        if spring is not None:
+            both = {"normal": spring, "tangential": spring}
+            keys = spring if isinstance(spring, dict) else both
+            spring = {
+                "normal": formula(keys.get("normal", 0)),
+                "tangential": formula(keys.get("tangential", 0)),
+                "rest": [formula(f) for f in keys.get("rest", [0] * self.dimension)],
+            }
         return Condition(
             [None if f == "free" else formula(f) for f in fixed],
             [formula(f) for f in own.get("traction", [0] * self.dimension)],
             formula(own.get("pressure", 0)),
             contact,
+            spring,
         )
 
 

@@ -83,8 +83,9 @@ def allowed_moments(residual, name, certificate, scale):
 
 
 def judge_balance(verdict, residual, balance, sigma_norm):
-    """The loads are those of the case; all rows add up to nothing."""
-    rows = {(row["name"], row["source"] == "body force"): row for row in balance["rows"] if row["kind"] == "load"}
+    """The loads and forces of springs are those of the case; all rows add up to nothing."""
+    rows = {(row["name"], row["source"] in ("body force", "spring") and row["source"]): row for row in balance["rows"]
+            if row["kind"] in ("load", "spring")}
     about = np.array(balance["about"])
     wrong = differences(residual, about, rows)
     if any(difference > DATA * scale for difference, scale, _ in wrong.values()):
@@ -120,18 +121,25 @@ def differences(residual, about, rows):
 
 
 def loads(residual):
-    """Points and forces of body forces and, in the free components, of boundaries; by name and whether it names a region."""
+    """Points and forces of body forces and, in the free components, of boundaries; by name and source, if no traction."""
     level, result = residual.level, {}
     d = level.dimension
     at = np.einsum("av,cvi->cai", lattice(d + 1, 1), level.vertices[level.cells])  # of linear functions, whose
     of_cells = residual.body_load(1)  # forces at the vertices have the same moments
     for number, name in enumerate(residual.region_names):
         cells = level.regions == number
-        result[name, True] = (at[cells].reshape(-1, d), of_cells[cells].reshape(-1, d))
+        result[name, "body force"] = (at[cells].reshape(-1, d), of_cells[cells].reshape(-1, d))
     for name, facets in residual.boundary.items():
         if len(facets) == 0 or name in residual.contact:
             continue
         owners, points, weights, traction = residual.boundary_load(name)
         free = np.array([datum is None for datum in residual.conditions[name].displacement])
         result[name, False] = (level.places(facets.cells[owners], points), weights[:, None] * traction * free)
+    for name in residual.springs:
+        spring = residual.conditions[name].spring
+        if not all(f.is_constant for f in [spring["normal"], spring["tangential"], *spring["rest"]]):
+            continue  # the rules of the program may miss a part
+        owners, points, weights, traction = residual.spring_load(name)
+        places = level.places(residual.boundary[name].cells[owners], points)
+        result[name, "spring"] = (places, weights[:, None] * traction)
     return result

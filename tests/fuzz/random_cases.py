@@ -154,7 +154,20 @@ def random_boundaries(dice, mesh):
         entry = {"traction": [datum(stress) if dice.chance(0.6) else 0 for _ in range(d)]}
         if dice.chance(0.4):
             entry["pressure"] = datum(stress)
+        if dice.chance(0.25):
+            entry["spring"] = spring()
         return entry
+
+    def spring():
+        stiffness = mesh.scale_E / length * dice.power(-2, 2)
+        if dice.chance(0.3):
+            return datum(stiffness, True)
+        keys = {"normal": datum(stiffness, True)}
+        if dice.chance(0.6):
+            keys["tangential"] = datum(stiffness * dice.power(-1, 0), True)
+        if dice.chance(0.5):
+            keys["rest"] = [datum(shift) for _ in range(d)]
+        return keys
 
     free = {"traction": [0] * d}
     names = list(mesh.boundaries)
@@ -162,6 +175,9 @@ def random_boundaries(dice, mesh):
     for number, name in enumerate(names):
         if number == 0 and dice.chance(0.9):
             conditions[name] = contact()
+        elif number == 1 and dice.chance(0.15):  # nothing else holds it
+            stiffness = mesh.scale_E / length * dice.power(-1, 1)
+            conditions[name] = {"spring": {"normal": stiffness, "tangential": stiffness / 3}}
         elif number == 1:
             conditions[name] = held(dice.chance(0.85))
         else:

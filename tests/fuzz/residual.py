@@ -1,6 +1,8 @@
 """The residual of a computed displacement and its dual norm from below, assembled anew from the data of the case.
 
-    <R(u), v> = L(v) - a(u, v) + (T(u), v)_C,  ||v||^2 = ||grad v||^2 + sum_F ||v||_F^2 / h_F,  v = 0 where u is prescribed
+    <R(u), v> = L(v) - a(u, v) - (K (u - u_0), v)_S + (T(u), v)_C,  ||v||^2 = ||grad v||^2 + sum_F ||v||_F^2 / h_F,
+
+v = 0 where u is prescribed, F in C and S.
 
 The supremum is taken over continuous P^q on the mesh. Data are integrated over parts of cells and facets, which are cut
 where formulas and the contact law have kinks.
@@ -28,6 +30,7 @@ class Residual:
         self.materials = np.array([[m.lam, m.mu] for m in materials])[level.regions]
         self.conditions = {name: case.condition(name) for name in self.boundary}
         self.contact = [name for name, c in self.conditions.items() if c.contact and len(self.boundary[name])]
+        self.springs = [name for name, c in self.conditions.items() if c.spring and len(self.boundary[name])]
 
     # data on parts of facets and cells
 
@@ -52,6 +55,8 @@ class Residual:
         for name, facets in self.boundary.items():
             if len(facets):
                 self.add(result, q, facets, *self.boundary_load(name))
+        for name in self.springs:
+            self.add(result, q, self.boundary[name], *self.spring_load(name))
         return result
 
     def boundary_load(self, name):
@@ -64,6 +69,20 @@ class Residual:
         places = self.level.places(facets.cells[owners], points)
         traction = np.stack([f(places) for f in condition.traction], axis=1)
         return owners, points, weights, traction - condition.pressure(places)[:, None] * facets.normals[owners]
+
+    def spring_load(self, name):
+        """Points of a boundary and -K (u - u_0), K without the components that are fixed."""
+        facets, condition = self.boundary[name], self.conditions[name]
+        spring = condition.spring
+        owners, points, weights = self.facet_rule(facets, [spring["normal"], spring["tangential"], *spring["rest"]])
+        places = self.level.places(facets.cells[owners], points)
+        free = np.array([datum is None for datum in condition.displacement])
+        moved = self.level.displacement(facets.cells[owners], points) - np.stack([f(places) for f in spring["rest"]], axis=1)
+        moved *= free
+        n = facets.normals[owners]
+        along = dot(moved, n)[:, None] * n
+        force = spring["normal"](places)[:, None] * along + spring["tangential"](places)[:, None] * (moved - along)
+        return owners, points, weights, -force * free
 
     def add(self, result, q, facets, owners, points, weights, traction):
         values = bernstein(points, q) * weights[:, None]
@@ -179,7 +198,7 @@ class Residual:
         columns = [np.tile(numbers, (1, size)).ravel()]
         entries = [blocks.ravel()]
         points, weights = rule(level.dimension - 1, 2 * q)
-        for name in self.contact:
+        for name in self.contact + self.springs:
             facets = self.boundary[name]
             owners = np.repeat(np.arange(len(facets)), len(weights))
             values = bernstein(facets.in_cell(owners, np.tile(points, (len(facets), 1))), q)

@@ -25,6 +25,7 @@
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/energy/obstacle_facets.h"
 #include "tribound/contact/nitsche/penalty.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/share_out.h"
 
@@ -167,6 +168,16 @@ ProblemData<dim> turned(ProblemData<dim> data)
   return data;
 }
 
+/// The same with springs on the loaded side.
+template <int dim>
+ProblemData<dim> sprung(ProblemData<dim> data)
+{
+  const auto top = std::ranges::find(data.boundaries, "top", &problem::BoundaryCondition<dim>::name);
+  top->spring.emplace(problem::Spring<dim>{formula("0.5 + 0.1*x"), 0.2});
+  top->spring->rest[1] = 0.01;
+  return data;
+}
+
 /// Ends and values of the intervals of a wave, with the sizes that rounding is measured by.
 template <int dim>
 std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const ProblemData<dim>& data,
@@ -177,7 +188,7 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const 
   const fem::LagrangeSpace<dim> space(mesh, degree);
   const contact::NitscheForm<dim> form(problem, space, contact::default_gamma0(degree));
   const std::vector<double> u = wave(form);
-  const std::vector<problem::Quantity<dim>> quantities = {
+  std::vector<problem::Quantity<dim>> quantities = {
       {.name = "energy"},
       {.name = "work", .kind = QuantityKind::load_work},
       {.name = "force", .kind = QuantityKind::contact_force, .boundary = "bottom"},
@@ -185,6 +196,8 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const 
       {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
       {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
       {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
+  if (contact::has_springs(problem))
+    quantities.push_back({.name = "spring", .kind = QuantityKind::spring_force, .boundary = "top"});
   EXPECT_EQ(certify::obstacles_unfit(form), "");
   const certify::EnergyBound bound =
       certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct}, quantities)(u);
@@ -211,7 +224,7 @@ TEST(Quantities, HaveTheIntervalsOfTheWhole)
       const mesh::Mesh<dim> whole(is_on_another ? renumbered(matching_blocks<dim>(2), degree)
                                                 : distorted(block<dim>({6, 4}, {4, 3, 2}), degree));
       const ProblemData<dim> plain = is_on_another ? on_another<dim>() : on_obstacles<dim>();
-      for (const ProblemData<dim>& data : {plain, turned<dim>(plain)})
+      for (const ProblemData<dim>& data : {plain, turned<dim>(sprung<dim>(plain))})
       {
         const mesh::Mesh<dim> part = contact::with_partners<dim>(
             mesh::share_out<dim>(ranks, ranks.is_first() ? &whole : nullptr), data.pairs);

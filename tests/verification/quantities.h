@@ -50,11 +50,13 @@ std::vector<QuantityInterval> intervals(const DiscreteProblem<dim>& c, const Qua
   return EnergyEstimator<dim>(c.form, c.method.solver, quantities)(u).quantities;
 }
 
-inline void expect_contains(const QuantityInterval& interval, double truth, const std::string& what = {})
+/// `accuracy`: of the truth.
+inline void expect_contains(const QuantityInterval& interval, double truth, const std::string& what = {},
+                            double accuracy = 0)
 {
   EXPECT_EQ(interval.reason, "") << interval.name << what << interval.note;
-  EXPECT_LE(interval.lower, truth) << interval.name << what;
-  EXPECT_GE(interval.upper, truth) << interval.name << what;
+  EXPECT_LE(interval.lower, truth + accuracy) << interval.name << what;
+  EXPECT_GE(interval.upper, truth - accuracy) << interval.name << what;
 }
 
 }  // namespace tribound::test

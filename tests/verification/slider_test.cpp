@@ -6,8 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <string>
@@ -18,10 +16,9 @@
 #include "support/meshes.h"
 #include "support/two_blocks.h"
 #include "tribound/adapt/error_bars.h"
-#include "tribound/certify/bound/estimate.h"
-#include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/mesh/refine.h"
 #include "verification/energy_effectivity.h"
+#include "verification/loads_reference.h"
 #include "verification/random_quantities.h"
 
 namespace tribound::test
@@ -92,37 +89,11 @@ TEST(Slider, HoldsInclinedSidesExactly)
   }
 }
 
-/// Numbers of an independent program.
 TEST(Slider, AgreesWithThePrototype)
 {
-  std::ifstream file(LOADS_REFERENCE);
-  for (const nlohmann::json& expected : nlohmann::json::parse(file))
-  {
-    if (expected["case"] != "slider") continue;
-    const ProblemData<2> data{.boundaries = {clamped<2>("left"), loaded<2>("right", 0.04, 0.2),
+  expect_reference("slider", {.boundaries = {clamped<2>("left"), loaded<2>("right", 0.04, 0.2),
                                              loaded<2>("top", 0.0, 0.05),
-                                             obstacle<2>("bottom", Slider(), formula("0.02*x*(2 - x)"))}};
-    const DiscreteProblem<2> c(block<2>({expected["nx"], expected["ny"]}), data,
-                               {.degree = expected["p"], .newton = {.tolerance = 1e-12}});
-    const solve::NewtonResult<2> found = c.solve();
-    const auto near = [&](double value, const char* name, double digits)
-    {
-      const double number = expected[name];
-      EXPECT_NEAR(value, number, digits * number) << name << ", p = " << expected["p"];
-    };
-    const contact::StressNorms norms = contact::stress_norms<2>(c.problem, c.space, found.u);
-    near(norms.energy, "energy", 1e-8);
-    near(norms.sigma, "sigma_norm", 1e-8);
-    const auto stress =
-        certify::equilibrate<2>(c.form, found.u, found.traction, 0, 0, certify::PatchStress::afw);
-    const certify::Estimate bound =
-        certify::estimate<2>(c.form, found.u, stress, certify::ContactRule::reference);
-    near(bound.total, "bound", 1e-6);
-    if (!expected["dual_norm"].is_null())
-    {
-      EXPECT_GE(bound.total, expected["dual_norm"].get<double>());
-    }
-  }
+                                             obstacle<2>("bottom", Slider(), formula("0.02*x*(2 - x)"))}});
 }
 
 /// A block that a slider holds below, in tension and pressure, with a motion that need not be polynomial; it

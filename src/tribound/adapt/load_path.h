@@ -57,7 +57,8 @@ struct LoadStep
   double reference_force = 0;  ///< NewtonOptions::reference_force of its solution
   /// The committed responses, at the contact points of the form.
   std::vector<problem::InterfaceResponse<dim>> responses;
-  /// a(u, phi_i) - (t + p_w n, phi_i)_C: loads, reactions and the pressure of water, by degree of freedom.
+  /// a(u, phi_i) - (t + p_w n, phi_i)_C: loads, reactions, springs and the pressure of water, by degree of
+  /// freedom.
   std::vector<double> forces;
   double work = 0;     ///< of these forces since the previous step, by the trapezoidal rule; energy
   double seconds = 0;  ///< wall time, failed attempts included

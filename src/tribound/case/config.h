@@ -45,6 +45,15 @@ struct LoadConfig
   Where where;
 };
 
+/// `spring` of a boundary.
+struct SpringConfig
+{
+  problem::Field normal = 0.0;
+  problem::Field tangential = 0.0;
+  std::vector<problem::Field> rest;  ///< empty: 0
+  Where where;
+};
+
 /// One [boundary.<name>] table.
 struct BoundaryConfig
 {
@@ -52,6 +61,7 @@ struct BoundaryConfig
   std::vector<std::optional<problem::Field>> displacement;  ///< empty: none given; nullopt: "free" component
   std::vector<problem::Field> traction;                     ///< empty: none given
   std::optional<problem::Field> pressure;                   ///< acts against the outward normal
+  std::optional<SpringConfig> spring;
   std::optional<problem::Contact> contact;
   GeometryConfig geometry;  ///< of the contact
   Where where;

@@ -77,24 +77,37 @@ const Table& obstacle_interface_table()
   return table;
 }
 
+const Table& spring_table()
+{
+  static const Table table{.name = "boundary.NAME.spring",
+                           .keys = {{"normal", nonnegative_datum()},
+                                    {"tangential", nonnegative_datum()},
+                                    {"rest", data("one number or formula per dimension")}}};
+  return table;
+}
+
 const Table& boundary_table()
 {
   static const Table table{
       .name = "boundary.NAME",
-      .keys = std::vector<Key>{{"displacement",
-                                vector_of(
-                                    datum() | one_of({"free"}),
-                                    "one number, formula or \"free\" per dimension, such as [0, \"free\"]")},
-                               {"traction", data()},
-                               {"pressure", datum()},
-                               {"contact", keys_of(obstacle_contact_table())},
-                               {"interface", keys_of(obstacle_interface_table())},
-                               {"slider", datum()}} +
-              slider_geometry_keys(),
+      .keys =
+          std::vector<Key>{
+              {"displacement",
+               vector_of(datum() | one_of({"free"}),
+                         "one number, formula or \"free\" per dimension, such as [0, \"free\"]")},
+              {"traction", data()},
+              {"pressure", datum()},
+              {"spring", nonnegative_datum("stress per length, or { normal, tangential, rest }") |
+                             keys_of(spring_table())},
+              {"contact", keys_of(obstacle_contact_table())},
+              {"interface", keys_of(obstacle_interface_table())},
+              {"slider", datum()}} +
+          slider_geometry_keys(),
       .relations = {
-          {.key = "contact", .excludes = {"displacement", "traction", "pressure", "interface", "slider"}},
-          {.key = "interface", .excludes = {"displacement", "traction", "pressure", "slider"}},
-          {.key = "slider", .excludes = {"displacement", "traction", "pressure"}},
+          {.key = "contact",
+           .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider"}},
+          {.key = "interface", .excludes = {"displacement", "traction", "pressure", "spring", "slider"}},
+          {.key = "slider", .excludes = {"displacement", "traction", "pressure", "spring"}},
           {.key = "shape", .needs = {"slider"}},
           {.key = "normal", .needs = {"slider"}}}};
   return table;
@@ -131,6 +144,27 @@ void read_slider(const TableReader& table, BoundaryConfig& boundary)
   table.read("slider", *contact.gap);
   boundary.contact = std::move(contact);
   boundary.geometry = read_slider_geometry(table);
+}
+
+/// One stiffness, or those along and across the normal and where the spring rests.
+void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
+{
+  const Node& node = *of_boundary.find("spring");
+  SpringConfig& spring = boundary.spring.emplace();
+  spring.where = node.where;
+  if (!node.is_table())
+  {
+    of_boundary.read("spring", spring.normal);
+    spring.tangential = spring.normal;
+    return;
+  }
+  const TableReader table(node, spring_table());
+  table.read("normal", spring.normal);
+  table.read("tangential", spring.tangential);
+  table.read("rest", spring.rest);
+  if (!table.has("normal") && !table.has("tangential"))
+    throw InputError(node.where, "has no stiffness",
+                     "normal = 1e7, tangential = 1e6, or spring = 1e7 for both");
 }
 
 /// The sides: slave and master, or a joint.
@@ -202,7 +236,7 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
     if (const Node* other = table.excluded_by(kind))
       throw InputError(
           other->where, fmt::format("stands beside {} on the same boundary", kind),
-          "a part of the boundary is either in contact or has displacement, traction and pressure; "
+          "a part of the boundary is either in contact or has displacement, traction, pressure and spring; "
           "split the group in the mesh; a pressure in the joint itself, such as uplift, is the water of an "
           "interface");
   for (const std::string_view key : {"shape", "normal"})
@@ -211,6 +245,8 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
   if (boundary.displacement.empty()) return;
 
   const auto is_fixed = [](const std::optional<problem::Field>& component) { return component.has_value(); };
+  if (boundary.spring && std::ranges::all_of(boundary.displacement, is_fixed))
+    fail("spring", "has no effect: displacement fixes every component", "drop it, or leave one \"free\"");
   if (boundary.pressure && std::ranges::all_of(boundary.displacement, is_fixed))
     fail("pressure", "has no effect: displacement fixes every component", "drop it, or leave one \"free\"");
   if (boundary.traction.empty()) return;
@@ -229,15 +265,16 @@ BoundaryConfig read_boundary(const Entry& entry)
 {
   const TableReader table(entry.node, boundary_table());
   if (std::get<Node::Table>(entry.node.value).empty())
-    throw InputError(
-        entry.where, "nothing is given on this boundary",
-        "displacement, traction, pressure, contact, interface or slider; traction-free is traction = [0, 0]");
+    throw InputError(entry.where, "nothing is given on this boundary",
+                     "displacement, traction, pressure, spring, contact, interface or slider; traction-free "
+                     "is traction = [0, 0]");
   BoundaryConfig boundary;
   boundary.name = entry.name;
   boundary.where = entry.where;
   table.read("displacement", boundary.displacement);
   table.read("traction", boundary.traction);
   table.read("pressure", boundary.pressure);
+  if (table.has("spring")) read_spring(table, boundary);
   const Node* interface = table.find("interface");
   if (const Node* contact = table.find("contact"))
   {

@@ -23,7 +23,8 @@ const std::array kinds = {
     KeyGroup{to_string(QuantityKind::contact_force), {"boundary", "direction", "ramp"}},
     KeyGroup{to_string(QuantityKind::contact_moment), {"boundary", "direction", "point", "ramp"}},
     KeyGroup{to_string(QuantityKind::safety_factor), {"boundary", "ramp"}, {"boundary"}},
-    KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}, {"boundary"}}};
+    KeyGroup{to_string(QuantityKind::mean_displacement), {"boundary", "direction"}, {"boundary"}},
+    KeyGroup{to_string(QuantityKind::spring_force), {"boundary", "direction"}, {"boundary"}}};
 
 /// Throws where a quantity is not defined without a key.
 void require_keys(const TableReader& table, const QuantityConfig& quantity)

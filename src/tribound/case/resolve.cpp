@@ -70,6 +70,14 @@ problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
   if (config.pressure) boundary.pressure = in_dimension<dim>(*config.pressure);
   if (!config.traction.empty())
     boundary.traction = vector_of<dim>(config.traction, inside(config.where, "traction"));
+  if (config.spring)
+  {
+    const SpringConfig& spring = *config.spring;
+    boundary.spring.emplace(
+        problem::Spring<dim>{in_dimension<dim>(spring.normal), in_dimension<dim>(spring.tangential)});
+    if (!spring.rest.empty())
+      boundary.spring->rest = vector_of<dim>(spring.rest, inside(spring.where, "rest"));
+  }
   if (config.displacement.empty()) return boundary;
   check_length<dim>(config.displacement.size(), inside(config.where, "displacement"));
   for (int i = 0; i < dim; ++i)
@@ -224,6 +232,7 @@ std::string label(problem::QuantityKind kind, const problem::Units& units, int d
     case problem::QuantityKind::load_work:
       return units.label(problem::UnitOf::energy, dimension);
     case problem::QuantityKind::contact_force:
+    case problem::QuantityKind::spring_force:
       return units.label(problem::UnitOf::force, dimension);
     case problem::QuantityKind::contact_moment:
       return units.label(problem::UnitOf::moment, dimension);

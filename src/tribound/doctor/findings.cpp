@@ -67,7 +67,10 @@ void add_supports(const Diagnosis& diagnosis, Findings& findings)
   if (diagnosis.beyond_contact) findings.push_back(load_beyond(*diagnosis.beyond_contact));
   for (const ContactHeldMotion& motion : diagnosis.held_by_contact) findings.push_back(held(motion));
   if (diagnosis.held_by_contact.empty())
-    findings.push_back({.code = "held", .text = "displacement conditions alone stop every rigid motion"});
+    findings.push_back({.code = "held",
+                        .text = diagnosis.loads.has_springs
+                                    ? "displacement conditions and springs stop every rigid motion"
+                                    : "displacement conditions alone stop every rigid motion"});
 }
 
 Finding strain_finding(const Diagnosis& diagnosis)
@@ -113,6 +116,18 @@ Finding strain_finding(const Diagnosis& diagnosis)
       "linear elasticity is meant for strains of a few per cent at most: look at the units of loads "
       "and E; in a scaled model only ratios mean something";
   return finding;
+}
+
+void add_soft_springs(const Diagnosis& diagnosis, Findings& findings)
+{
+  const double shift = diagnosis.loads.spring_shift;
+  if (shift <= small_strain) return;
+  Finding finding{.code = "soft_springs", .severity = Severity::warning};
+  finding.text = fmt::format("the loads move the body about {:.3g}{} on its springs, {:.2g} of its size",
+                             shift * diagnosis.loads.size, diagnosis.behind(UnitOf::length), shift);
+  finding.advice = "displacements are meant to be small: look at the units, stress per length, of spring";
+  finding.numbers = {{"spring_shift", shift}};
+  findings.push_back(std::move(finding));
 }
 
 void add_suction(const Diagnosis& diagnosis, Findings& findings)
@@ -219,6 +234,7 @@ std::vector<Finding> findings(const Diagnosis& diagnosis)
   std::ranges::move(contact_findings(diagnosis), std::back_inserter(result));
   std::ranges::move(pair_findings(diagnosis), std::back_inserter(result));
   result.push_back(strain_finding(diagnosis));
+  add_soft_springs(diagnosis, result);
   add_suction(diagnosis, result);
   add_poisson(diagnosis, result);
   std::ranges::move(unit_findings(diagnosis), std::back_inserter(result));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 
 namespace tribound::doctor
@@ -112,18 +113,20 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
-    if (problem.is_in_contact(facet.tag) || condition.fixes_any())
+    if (problem.is_in_contact(facet.tag) || condition.holds_any())
       measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   return measure;
 }
 
-/// The largest range of a prescribed component. A fixed obstacle counts as 0.
+/// The largest range of a component that is prescribed or of springs at rest. A fixed obstacle counts as 0,
+/// and springs, which let the body go, too.
 template <int dim>
-double displacement_range(const contact::NitscheForm<dim>& form)
+double displacement_range(const contact::NitscheForm<dim>& form, const contact::Springs<dim>& springs)
 {
   const fem::Constraints& constraints = form.constraints();
-  const double start = form.problem().has_contact() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  const bool has_zero = form.problem().has_contact() || !springs.facets().empty();
+  const double start = has_zero ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   double range = 0;
   for (int component = 0; component < dim; ++component)
   {
@@ -135,9 +138,27 @@ double displacement_range(const contact::NitscheForm<dim>& form)
       lowest = std::fmin(lowest, constraints.values[i]);  // fmin ignores NaN
       highest = std::fmax(highest, constraints.values[i]);
     }
+    for (const contact::SpringFacet<dim>& facet : springs.facets())
+      for (const Point<dim>& rest : facet.rest.values)
+      {
+        lowest = std::fmin(lowest, rest[component]);
+        highest = std::fmax(highest, rest[component]);
+      }
     range = std::fmax(range, highest - lowest);
   }
   return range;
+}
+
+template <int dim>
+using Condition = problem::BoundaryCondition<dim>;
+
+/// How far a force moves what the springs hold; 0 without springs.
+template <int dim>
+double shift_on(const contact::Springs<dim>& springs, double force)
+{
+  double stiffness = 0;
+  for (const contact::SpringFacet<dim>& facet : springs.facets()) stiffness += facet.most * facet.measure;
+  return stiffness > 0 ? force / stiffness : 0;
 }
 
 }  // namespace
@@ -174,7 +195,11 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   const double support = supporting_measure(problem, mesh);
   if (support > 0) facts.support_stress = resultant.norm() / support;
   facts.body_stress = facts.largest_body_force * facts.size;
-  facts.displacement_strain = displacement_range(form) / facts.size;
+  const contact::Springs<dim> springs(problem, form.space());
+  facts.has_springs = !springs.facets().empty();
+  facts.displacement_strain = displacement_range(form, springs) / facts.size;
+  if (!problem.has_contact() && std::ranges::none_of(problem.boundaries(), &Condition<dim>::fixes_any))
+    facts.spring_shift = shift_on(springs, resultant.norm()) / facts.size;
   for (const contact::ContactPoint<dim>& point : form.contact_points())
     facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);
   facts.suction = find_suction(form);

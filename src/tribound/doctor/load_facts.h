@@ -50,8 +50,12 @@ struct LoadFacts
   double traction_stress = 0;      ///< the largest mean of |g_N| over a boundary
   double support_stress = 0;       ///< |int f + int g_N| over the area held by contact or displacements
   double body_stress = 0;          ///< max |f| L
-  double displacement_strain = 0;  ///< range of a prescribed component / L; with contact, it includes 0
+  double displacement_strain = 0;  ///< range of a component, prescribed or of springs at rest, / L; it
+                                   ///< includes 0 with contact and springs
   double interference_strain = 0;  ///< the largest interference, -g, / L
+  /// |int f + int g_N| / (L int |K|): how far the loads move what springs alone hold, / L; else 0.
+  double spring_shift = 0;
+  bool has_springs = false;
   std::vector<Suction> suction;
 
   /// The largest of these stresses.

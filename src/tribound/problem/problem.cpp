@@ -108,9 +108,44 @@ int group_number(const std::string& name, std::span<const std::string> groups, c
 }
 
 template <int dim>
+Tensor<dim> Spring<dim>::stiffness(const Point<dim>& x, const Point<dim>& n) const
+{
+  const auto at_x = [&](const Field& field)
+  {
+    const double k = field(x);
+    if (!(k >= 0))
+      throw InputError(field.where(),
+                       fmt::format("the stiffness of the spring is {} at {}", k, fmt::join(x, ", ")),
+                       "numbers >= 0, stress per length");
+    return k;
+  };
+  return spring_matrix<dim>(at_x(normal), at_x(tangential), n);
+}
+
+template <int dim>
 bool BoundaryCondition<dim>::fixes_any() const
 {
   return std::ranges::any_of(displacement, [](const auto& component) { return component.has_value(); });
+}
+
+template <int dim>
+Tensor<dim> BoundaryCondition<dim>::held(const Point<dim>& x, const Point<dim>& n) const
+{
+  Tensor<dim> result = Tensor<dim>::Zero();
+  if (spring)
+  {
+    const Tensor<dim> across = Tensor<dim>::Identity() - n * n.transpose();
+    if (spring->normal(x) > 0) result += n * n.transpose();
+    if (spring->tangential(x) > 0) result += across;
+  }
+  for (int a = 0; a < dim; ++a)
+    if (fixes(a))
+    {
+      result.row(a).setZero();
+      result.col(a).setZero();
+      result(a, a) = 1;
+    }
+  return result;
 }
 
 template <int dim>
@@ -231,6 +266,10 @@ int Problem<dim>::load_degree() const
   {
     for (const Field& g : boundary.traction) degree = std::max(degree, g.degree());
     if (boundary.pressure) degree = std::max(degree, boundary.pressure->degree());
+    if (!boundary.spring) continue;
+    const int of_stiffness = std::max(boundary.spring->normal.degree(), boundary.spring->tangential.degree());
+    for (const Field& rest : boundary.spring->rest)
+      if (!rest.is_zero()) degree = std::max(degree, of_stiffness + rest.degree());
   }
   return degree;
 }
@@ -279,6 +318,10 @@ void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
       if (component) visit(*component);
     for (auto& component : boundary.traction) visit(component);
     if (boundary.pressure) visit(*boundary.pressure);
+    if (!boundary.spring) continue;
+    visit(boundary.spring->normal);
+    visit(boundary.spring->tangential);
+    for (auto& component : boundary.spring->rest) visit(component);
   }
   for_each_contact(problem, of_contact);
 }
@@ -327,6 +370,8 @@ bool Problem<dim>::has_contact() const
          std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.contact.has_value(); });
 }
 
+template struct Spring<2>;
+template struct Spring<3>;
 template struct BoundaryCondition<2>;
 template struct BoundaryCondition<3>;
 template BoundaryCondition<2> with_displacement<2>(const std::string&, std::array<std::optional<Field>, 2>);

@@ -82,6 +82,26 @@ struct PairSide
   bool is_slave = false;
 };
 
+/// k_n n n^T + k_t (I - n n^T).
+template <int dim>
+[[nodiscard]] Tensor<dim> spring_matrix(double k_n, double k_t, const Point<dim>& n)
+{
+  return k_t * Tensor<dim>::Identity() + (k_n - k_t) * n * n.transpose();
+}
+
+/// An elastic support or foundation: sigma n = g_N - K (u - u_0) with K = k_n n n^T + k_t (I - n n^T), n the
+/// normal of the facet.
+template <int dim>
+struct Spring
+{
+  Field normal;                      ///< k_n >= 0, stress per length
+  Field tangential;                  ///< k_t >= 0
+  std::array<Field, dim> rest = {};  ///< u_0
+
+  /// K at x. Throws InputError for a negative stiffness, naming the place.
+  [[nodiscard]] Tensor<dim> stiffness(const Point<dim>& x, const Point<dim>& n) const;
+};
+
 /// The conditions on one named part of the boundary.
 template <int dim>
 struct BoundaryCondition
@@ -90,11 +110,19 @@ struct BoundaryCondition
   std::array<std::optional<Field>, dim> displacement;  ///< fixed components (Gamma_D)
   std::array<Field, dim> traction;                     ///< g_N on the free components
   std::optional<Field> pressure;                       ///< adds -pressure n to g_N
+  std::optional<Spring<dim>> spring;                   ///< on the free components
   std::optional<Contact> contact;                      ///< Gamma_C
   Where where;                                         ///< for messages
 
   [[nodiscard]] bool fixes(int component) const { return displacement[component].has_value(); }
   [[nodiscard]] bool fixes_any() const;
+  /// Whether displacement or a spring holds anything here.
+  [[nodiscard]] bool holds_any() const { return fixes_any() || spring.has_value(); }
+  /// Whether the norm of the residual has the trace here: on obstacles and springs.
+  [[nodiscard]] bool is_in_norm() const { return contact.has_value() || spring.has_value(); }
+  /// A matrix M such that motions with M z = 0 are free at x: the components that are fixed, or where a
+  /// spring is.
+  [[nodiscard]] Tensor<dim> held(const Point<dim>& x, const Point<dim>& n) const;
   /// Whether g_N can be non-zero.
   [[nodiscard]] bool is_loaded() const;
   /// g_N at x with outward unit normal n; components that are fixed are 0.

@@ -22,7 +22,8 @@ int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
   const bool is_safety = quantity.kind == QuantityKind::safety_factor;
   const bool is_of_contact =
       quantity.kind == QuantityKind::contact_force || quantity.kind == QuantityKind::contact_moment;
-  const bool may_be_all = !is_safety && quantity.kind != QuantityKind::mean_displacement;
+  const bool is_of_spring = quantity.kind == QuantityKind::spring_force;
+  const bool may_be_all = !is_safety && !is_of_spring && quantity.kind != QuantityKind::mean_displacement;
   if (is_of_contact && !problem.has_contact())
     throw InputError(quantity.where, "nothing touches anything", "forces are those of contact boundaries");
   if (quantity.boundary.empty() && may_be_all) return -1;
@@ -36,6 +37,9 @@ int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
     throw InputError(
         quantity.where, fmt::format("boundary \"{}\" has no Coulomb friction", quantity.boundary),
         "a boundary with contact or an interface that has a coefficient: a safety factor is mu_F N / H");
+  if (is_of_spring && !problem.boundary(tag).spring)
+    throw InputError(quantity.where, fmt::format("boundary \"{}\" has no spring", quantity.boundary),
+                     "a boundary with the key spring");
   return tag;
 }
 

@@ -17,13 +17,14 @@ namespace tribound::problem
 
 enum class QuantityKind
 {
-  energy,            ///< a(u, u), twice the elastic energy
-  load_work,         ///< L(u) = (f, u) + (g_N, u)_N
-  contact_force,     ///< integral of sigma(u) n . e over contact boundaries, which acts on the body
-  contact_moment,    ///< moment of sigma(u) n about a point, in 3D about an axis e through it
-  safety_factor,     ///< mu_F N / H of a plane boundary with Coulomb's friction, without any bond: H =
-                     ///< |integral of sigma^t|, N = -(integral of sigma^n + p_w), p_w of water in the joint
-  mean_displacement  ///< mean of u . e over a boundary
+  energy,             ///< a(u, u), twice the elastic energy
+  load_work,          ///< L(u) = (f, u) + (g_N, u)_N
+  contact_force,      ///< integral of sigma(u) n . e over contact boundaries, which acts on the body
+  contact_moment,     ///< moment of sigma(u) n about a point, in 3D about an axis e through it
+  safety_factor,      ///< mu_F N / H of a plane boundary with Coulomb's friction, without any bond: H =
+                      ///< |integral of sigma^t|, N = -(integral of sigma^n + p_w), p_w of water in the joint
+  mean_displacement,  ///< mean of u . e over a boundary
+  spring_force        ///< integral of -K (u - u_0) . e over a boundary, which acts on the body
 };
 
 /// "energy", "load_work", ..., as in case files.
@@ -43,6 +44,8 @@ enum class QuantityKind
       return "safety_factor";
     case QuantityKind::mean_displacement:
       return "mean_displacement";
+    case QuantityKind::spring_force:
+      return "spring_force";
   }
   return {};
 }
@@ -65,8 +68,8 @@ struct Quantity
 };
 
 /// The number of its boundary; -1 if it refers to all contact boundaries or to the whole. Throws InputError
-/// if there is no such boundary, no contact for a force or moment, or no friction coefficient for a safety
-/// factor.
+/// if there is no such boundary, no contact for a force or moment, no spring for its force, or no friction
+/// coefficient for a safety factor.
 template <int dim>
 [[nodiscard]] int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
                                   std::span<const std::string> boundary_names);

@@ -47,6 +47,11 @@ std::string valid_case(const std::string& table)
   return text;
 }
 
+bool belongs_to_slider(const Row& row)
+{
+  return row.table == "boundary.top" && (row.key == "normal" || row.key == "shape");
+}
+
 /// Other settings that a key needs to be allowed.
 std::vector<std::string> companions(const Row& row)
 {
@@ -61,8 +66,8 @@ std::vector<std::string> companions(const Row& row)
   if (row.name() == "quantity.0.point" || row.name() == "quantity.0.ramp")
     return {"quantity.0.kind=contact_moment"};
   if (row.key == "goal_tolerance") return {"quantity=[{kind=\"energy\"}]", "adapt.goal=energy"};
-  if (row.table == "boundary.top" && (row.key == "normal" || row.key == "shape"))
-    return {"boundary.top.slider=0"};
+  if (belongs_to_slider(row)) return {"boundary.top.slider=0"};
+  if (row.name() == "boundary.top.spring.rest") return {"boundary.top.spring.normal=1"};
   if (row.key == "coefficient") return {row.table + ".friction=coulomb"};
   if (row.name() == "parameters.NAME.value") return {"material.E=\"1 + NAME^2\""};
   if (row.table == "parameters.NAME") return {"parameters.NAME.value=1", "material.E=NAME"};
@@ -78,8 +83,7 @@ std::optional<InputError> refusal(const Row& row, const std::string& value)
   std::string text = valid_case(row.table);
   if (row.name() == "mesh.file") text = "mesh.file = " + value + "\nmaterial = { E = 1, nu = 0 }\n";
   if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
-  if (row.table == "boundary.top" && (row.key == "slider" || row.key == "normal" || row.key == "shape"))
-    text = valid_case("");
+  if (row.name() == "boundary.top.slider" || belongs_to_slider(row)) text = valid_case("");
   if (row.name() == "contact.0.joint") text = valid_case("") + "contact = [{}]\n";
   try
   {
@@ -128,7 +132,8 @@ void try_out_numbers(const Row& row)
     expect_refused(row, beyond(end, outward));
     if (!integer) expect_accepted(row, beyond(end, -outward));
   };
-  if (std::regex_match(row.type, match, std::regex("(?:number|datum|integer) (>=?) ([-0-9.]+)")))
+  if (std::regex_match(row.type, match,
+                       std::regex("(?:number|datum|integer) (>=?) ([-0-9.]+)(?:, or table)?")))
   {
     end_point(match[2], match[1] == ">=", -1);
     expect_accepted(row, "1000");

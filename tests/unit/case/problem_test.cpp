@@ -53,7 +53,8 @@ TEST(CaseFacts, HaveTheUnitOfEveryQuantity)
       "[[quantity]]\nkind = 'energy'\n[[quantity]]\nkind = 'load_work'\n"
       "[[quantity]]\nkind = 'contact_force'\ndirection = [0, 1]\n[[quantity]]\nkind = 'contact_moment'\n"
       "[[quantity]]\nkind = 'safety_factor'\nboundary = 'top'\n"
-      "[[quantity]]\nkind = 'mean_displacement'\nboundary = 'top'\n";
+      "[[quantity]]\nkind = 'mean_displacement'\nboundary = 'top'\n"
+      "[[quantity]]\nkind = 'spring_force'\nboundary = 'top'\n";
   const auto units_of = [&](const std::string& units, int dimension)
   {
     std::vector<std::string> labels;
@@ -65,11 +66,11 @@ TEST(CaseFacts, HaveTheUnitOfEveryQuantity)
   EXPECT_THAT(
       units_of("[units]\nlength = 'mm'\nforce = 'N'\n", 3),
       testing::ElementsAre("energy: N mm", "load_work: N mm", "contact_force: N", "contact_moment: N mm",
-                           "safety_factor top: ", "mean_displacement top: mm"));
-  EXPECT_THAT(
-      units_of("[units]\nlength = 'm'\nforce = 'kN'\n", 2),
-      testing::ElementsAre("energy: kN m/m", "load_work: kN m/m", "contact_force: kN/m",
-                           "contact_moment: kN m/m", "safety_factor top: ", "mean_displacement top: m"));
+                           "safety_factor top: ", "mean_displacement top: mm", "spring_force top: N"));
+  EXPECT_THAT(units_of("[units]\nlength = 'm'\nforce = 'kN'\n", 2),
+              testing::ElementsAre(
+                  "energy: kN m/m", "load_work: kN m/m", "contact_force: kN/m", "contact_moment: kN m/m",
+                  "safety_factor top: ", "mean_displacement top: m", "spring_force top: kN/m"));
   EXPECT_THAT(units_of("", 2), testing::Contains("energy: "));
 }
 

@@ -181,6 +181,18 @@ TEST(Findings, LoadsAgainstStiffness)
               HasSubstr("prescribed displacements of 0.2 over the size 2"));
 }
 
+TEST(Findings, SoftSprings)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.loads.spring_shift = 0.04;
+  EXPECT_TRUE(std::ranges::none_of(doctor::findings(diagnosis),
+                                   [](const doctor::Finding& f) { return f.code == "soft_springs"; }));
+  diagnosis.loads.spring_shift = 0.1;
+  EXPECT_EQ(finding(diagnosis, "soft_springs").severity, doctor::Severity::warning);
+  EXPECT_EQ(finding(diagnosis, "soft_springs").text,
+            "the loads move the body about 0.2 on its springs, 0.1 of its size");
+}
+
 TEST(Findings, NearlyIncompressible)
 {
   doctor::Diagnosis diagnosis = healthy();

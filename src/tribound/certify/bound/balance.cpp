@@ -5,6 +5,7 @@
 
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/residual.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"
@@ -109,6 +110,22 @@ std::vector<Resultant<dim>> integrate_tractions(const contact::NitscheForm<dim>&
                 map(points[q]) - about,
                 side.sign * form.contact_points(static_cast<int>(k))[q].weight * t[k * points.size() + q]);
         });
+  add_up<dim>(mesh.ranks(), result);
+  return result;
+}
+
+/// The integral of -K (u - u_0) over every boundary.
+template <int dim>
+std::vector<Resultant<dim>> integrate_springs(const contact::NitscheForm<dim>& form,
+                                              std::span<const double> u, const Point<dim>& about)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const contact::Springs<dim> springs(form.problem(), form.space());
+  std::vector<Resultant<dim>> result(form.problem().boundaries().size());
+  for (const contact::SpringFacet<dim>& facet : springs.facets())
+    if (facet.number < mesh.n_owned_boundary())
+      for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, form.facet_rule()))
+        result[mesh.boundary()[facet.number].tag].add(x - about, dx * springs.traction(facet, u, q));
   add_up<dim>(mesh.ranks(), result);
   return result;
 }
@@ -219,7 +236,7 @@ void add_sum(std::vector<BalanceRow>& rows, std::size_t dim, std::size_t n_momen
 
 std::string to_string(BalanceKind kind)
 {
-  constexpr std::array names = {"load", "reaction", "contact", "sum"};
+  constexpr std::array names = {"load", "reaction", "spring", "contact", "sum"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -245,6 +262,7 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
   const Loads<dim> loads = integrate_loads<dim>(form, about);
   const std::vector<Resultant<dim>> tractions = integrate_tractions<dim>(form, t, about);
   const std::vector<Resultant<dim>> reactions = sum_reactions<dim>(form, u, t, about);
+  const std::vector<Resultant<dim>> springs = integrate_springs<dim>(form, u, about);
   Balance result{{about.begin(), about.end()}, {}};
   for (int r = 0; r < static_cast<int>(loads.regions.size()); ++r)
     if (!problem.body_force_is_zero(r))
@@ -263,6 +281,9 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
   add(
       BalanceKind::reaction, [](const auto& b, int) { return b.fixes_any(); },
       [](const auto&) { return "displacement"; }, reactions);
+  add(
+      BalanceKind::spring, [](const auto& b, int) { return b.spring.has_value(); },
+      [](const auto&) { return "spring"; }, springs);
   add(
       BalanceKind::contact, [&](const auto&, int tag) { return problem.is_in_contact(tag); },
       [](const auto&) { return "contact"; }, tractions);

@@ -18,11 +18,12 @@ enum class BalanceKind
   load,      ///< integral of f over a region, or of g_N over a boundary
   reaction,  ///< a(u, phi) - L(phi) - (t, [phi])_C summed over the nodes of a boundary, in the components it
              ///< fixes
+  spring,    ///< integral of -K (u - u_0) over a boundary
   contact,   ///< integral of the traction t^k over a boundary in contact, slave or master
   sum        ///< of all rows
 };
 
-/// "load", "reaction", "contact", "sum".
+/// "load", "reaction", "spring", "contact", "sum".
 [[nodiscard]] std::string to_string(BalanceKind kind);
 
 /// A force on the body (per unit of depth in 2D).

@@ -8,6 +8,7 @@
 #include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/contact_geometry.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -196,6 +197,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "H^1, "
       "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
       "facets F" +
+          std::string(contact::has_springs(form.problem()) ? " and those on springs" : "") +
           std::string(form.problem().pairs().empty()
                           ? "; no unknown constant"
                           : ", between bodies with the jump of v over the segments on which a facet of one "

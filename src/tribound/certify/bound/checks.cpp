@@ -174,11 +174,12 @@ class FacetMoments
   std::vector<double> theta_;
 };
 
-/// The moments of the traction on each boundary facet: g_N, t^k on slaves, -t^k on masters. Empty: no
-/// traction.
+/// The moments of the traction on each boundary facet: g_N - K (u - u_0), t^k on slaves, -t^k on masters.
+/// Empty: no traction.
 template <int dim>
 std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheForm<dim>& form,
-                                                        std::span<const Point<dim>> t, int degree)
+                                                        std::span<const Point<dim>> t,
+                                                        std::span<const Point<dim>> springs, int degree)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
@@ -186,13 +187,15 @@ std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheFo
   std::vector<Point<dim>> g(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
-    if (!form.data().has_traction(number)) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    const bool has_spring = form.problem().boundary(facet.tag).spring.has_value();
+    if (!has_spring && !form.data().has_traction(number)) continue;
     FacetMoments<dim> on_facet(mesh, facet, degree);
     moments[number] = on_facet.none();
     form.data().traction(number, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      on_facet.add(rule.points[q], dx, g[q], moments[number]);
+      on_facet.add(rule.points[q], dx, has_spring ? Point<dim>(g[q] + springs[q]) : g[q], moments[number]);
+    if (has_spring) springs = springs.subspan(rule.size());
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side(
@@ -214,7 +217,7 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
-  const auto prescribed = prescribed_moments(form, t, stress.degree);
+  const auto prescribed = prescribed_moments<dim>(form, t, stress.tractions.springs, stress.degree);
   std::vector<char> in_contact(mesh.boundary().size(), 0);
   for (const contact::ContactSegment<dim>& segment : form.segments())
     segment.for_each_side([&](const contact::SegmentSide<dim>& side) { in_contact[side.number] = 1; });

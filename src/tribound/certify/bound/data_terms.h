@@ -1,11 +1,13 @@
 #pragma once
 
 /// @file data_terms.h
-/// The components of the bound that depend on the data and the mesh alone, method section 5.
+/// The components of the bound for data that are no polynomials, method section 5.
 
+#include <span>
 #include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -14,14 +16,16 @@ namespace tribound::certify
 struct DataTerms
 {
   std::vector<double> osc;  ///< (h_T / pi) ||f - Pi^{p-1} f||_T
-  std::vector<double> neu;  ///< sum over the Neumann facets of T of C_{T,F} ||g_N - Pi^p_F g_N||_F
+  /// Sum over the Neumann facets of T of C_{T,F} ||g - Pi^p_F g||_F, g = g_N - K (u - u_0).
+  std::vector<double> neu;
   /// ||rho|| over all ranks, rho the cell means of what quadrature may miss of the loads. C_F ||rho|| bounds
   /// its effect.
   double missed = 0;
 };
 
-/// Upper bounds if the data are not polynomials: contact/nitsche/discrete_data.h.
+/// Upper bounds if the data are not polynomials: contact/nitsche/discrete_data.h, springs.h.
 template <int dim>
-[[nodiscard]] DataTerms data_terms(const contact::NitscheForm<dim>& form);
+[[nodiscard]] DataTerms data_terms(const contact::NitscheForm<dim>& form,
+                                   const contact::Springs<dim>& springs, std::span<const double> u);
 
 }  // namespace tribound::certify

@@ -49,7 +49,7 @@ template <int dim>
 Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rule,
                           const std::optional<FriedrichsConstant>& known)
     : form_(form),
-      data_(data_terms(form)),
+      springs_(form.problem(), form.space()),
       friedrichs_(known ? *known : friedrichs_constant(form.problem(), form.space().mesh())),
       algebraic_(form),
       contact_(form, rule),
@@ -72,10 +72,11 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
   Estimate result;
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   result.cells.resize(mesh.n_owned_cells());
+  const DataTerms data = data_terms<dim>(form_, springs_, u);
   for (std::size_t c = 0; c < result.cells.size(); ++c)
   {
-    result.cells[c].osc = data_.osc[c];
-    result.cells[c].neu = data_.neu[c];
+    result.cells[c].osc = data.osc[c];
+    result.cells[c].neu = data.neu[c];
   }
   mesh.ranks().together(
       [&]
@@ -86,7 +87,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
       });
   const double alg =
       std::isfinite(friedrichs_.value) ? algebraic_error<dim>(mesh, rho, friedrichs_.value) : 0;
-  add_up(result, data_.missed > 0 ? friedrichs_.value * data_.missed : 0, alg, mesh.ranks());
+  add_up(result, data.missed > 0 ? friedrichs_.value * data.missed : 0, alg, mesh.ranks());
   return result;
 }
 

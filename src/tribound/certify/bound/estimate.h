@@ -92,7 +92,7 @@ class Estimator
   void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
 
   const contact::NitscheForm<dim>& form_;
-  DataTerms data_;
+  contact::Springs<dim> springs_;
   FriedrichsConstant friedrichs_;
   AlgebraicResidual<dim> algebraic_;
   ContactTerms<dim> contact_;

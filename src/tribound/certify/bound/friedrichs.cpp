@@ -60,7 +60,7 @@ std::vector<char> fixed_facets(const problem::Problem<dim>& problem, const mesh:
 
 /// A = sum_T w_T (grad ., grad .)_T + sum_{F in C} (|F|/h_F) mean_F(.) mean_F(.) + the couplings of pairs, M
 /// = sum_T (., .)_T for the Crouzeix-Raviart functions phi_i = 1 - d lambda_i, which have mean 1 on facet i
-/// and 0 on the others; C the obstacles.
+/// and 0 on the others; C the obstacles and springs.
 template <int dim>
 Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proof,
                 const std::vector<char>& fixed)
@@ -99,7 +99,7 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
   }
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
-    if (!problem.boundary(facet.tag).contact) continue;
+    if (!problem.boundary(facet.tag).is_in_norm()) continue;
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const Index i = number[cell_facets[facet.cell][facet.local]];
     add(i, i, geometry.measure / (proof.facet_scale * geometry.diameter), 0);
@@ -172,7 +172,7 @@ Held held(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
       for (const mesh::BoundaryFacet& facet : body.facets)
         for (int a = 0; a < dim; ++a)
           of_body[a] =
-              of_body[a] || problem.boundary(facet.tag).fixes(a) || problem.boundary(facet.tag).contact;
+              of_body[a] || problem.boundary(facet.tag).fixes(a) || problem.boundary(facet.tag).is_in_norm();
       for (int a = 0; a < dim; ++a) of_any[a] = of_any[a] || of_body[a];
       if (std::ranges::count(of_body, false) > 0) result = Held::with_pairs;
     }

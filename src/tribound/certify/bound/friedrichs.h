@@ -34,12 +34,12 @@ inline constexpr Index most_cells_factorised = 20'000;
 
 /// C_F with ||v|| <= C_F ||v||_{C,h} for all v that vanish in the components that Gamma_D fixes,
 ///     ||v||_{C,h}^2 = ||grad v||^2 + sum_{F in C} (1/h_F) ||v||_F^2 + sum_k (1/h_k) ||[v]||_k^2,
-/// where C are the obstacles and k the segments of pairs; on this mesh and on all its refinements, whose h_F
-/// and h_k are not larger. Pairs count if a body needs them (friedrichs_pairs.h). Infinite (and theta = 0) if
-/// joined bodies have a component with neither Gamma_D nor C, which check_rigid_motions() refuses as a free
-/// translation, and if no theta could be proved. If the factorisation fails, for example for lack of memory,
-/// the proof without it is used, too. Infinite for a distributed mesh: the constant of the undistributed mesh
-/// is known before. So is K.
+/// where C are the obstacles and springs and k the segments of pairs; on this mesh and on all its
+/// refinements, whose h_F and h_k are not larger. Pairs count if a body needs them (friedrichs_pairs.h).
+/// Infinite (and theta = 0) if joined bodies have a component with neither Gamma_D nor C, which
+/// check_rigid_motions() refuses as a free translation, and if no theta could be proved. If the factorisation
+/// fails, for example for lack of memory, the proof without it is used, too. Infinite for a distributed mesh:
+/// the constant of the undistributed mesh is known before. So is K.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem,
                                                      const mesh::Mesh<dim>& mesh,

@@ -55,7 +55,7 @@ std::vector<double> largest_fluxes(const problem::Problem<dim>& problem, const m
     const Index f = mesh.topology().cell_facets[facet.cell][facet.local];
     if (fixed[f]) continue;
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    largest[f] = problem.boundary(facet.tag).contact ? geometry.measure / geometry.diameter : 0;
+    largest[f] = problem.boundary(facet.tag).is_in_norm() ? geometry.measure / geometry.diameter : 0;
   }
   return largest;
 }

@@ -67,7 +67,7 @@ struct VertexSystem
     a.reserve((dim + 1) * (dim + 1) * static_cast<std::size_t>(mesh.n_cells()));
     for (Index c = 0; c < mesh.n_cells(); ++c) add_cell(mesh, c);
     for (const mesh::BoundaryFacet& facet : mesh.boundary())
-      if (problem.boundary(facet.tag).contact && !fixed[cell_facets[facet.cell][facet.local]])
+      if (problem.boundary(facet.tag).is_in_norm() && !fixed[cell_facets[facet.cell][facet.local]])
         add_contact(mesh, facet);
   }
 

@@ -32,10 +32,14 @@ template <int dim>
 template <int dim>
 struct ContactResultant
 {
-  int tag = -1;  ///< of the boundary; -1: all
+  int tag = -1;  ///< of the boundary; -1: all contact boundaries
   RigidMotion<dim> motion{};
 
   [[nodiscard]] bool has(int boundary) const { return tag < 0 || boundary == tag; }
+  [[nodiscard]] bool has_spring(const problem::Problem<dim>& problem, int boundary) const
+  {
+    return boundary == tag && problem.boundary(boundary).spring;
+  }
 };
 
 /// A number known up to rounding and what quadrature may miss.
@@ -46,8 +50,8 @@ struct KnownNumber
 };
 
 /// The resultant if it follows from equilibrium: nothing else may stop the motion of the bodies on whose
-/// contact boundaries it is taken. Then every solution has -(f, m) - (g_N, m)_N over these bodies, for any
-/// contact law. All ranks together.
+/// contact boundaries or springs it is taken. Then every solution has -(f, m) - (g_N, m)_N over these bodies,
+/// for any contact law. All ranks together.
 template <int dim>
 [[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                                           const ContactResultant<dim>& resultant);

@@ -1,9 +1,11 @@
 #include "tribound/certify/energy/dual_problem.h"
 
+#include <cmath>
 #include <utility>
 
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/certify/energy/load_oscillation.h"
 
 namespace tribound::certify
 {
@@ -13,6 +15,7 @@ DualProblem<dim>::DualProblem(const contact::NitscheForm<dim>& form, problem::Pr
     : problem_(std::move(problem)),
       form_(problem_, form.space(), form.gamma0(),
             std::vector(form.segments().begin(), form.segments().end())),
+      springs_(problem_, form.space()),
       equilibrator_(std::make_unique<Equilibrator<dim>>(form_, PatchStress::afw))
 {
 }
@@ -35,6 +38,15 @@ Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<cons
   return stress;
 }
 
+template <int dim>
+double DualProblem<dim>::oscillation(std::span<const double> z) const
+{
+  double squares = 0;
+  for (const double of_cell : load_oscillation<dim>(form_, springs_, z, 0).cells)
+    squares += of_cell * of_cell;
+  return std::sqrt(form_.space().mesh().ranks().sum(squares));
+}
+
 namespace
 {
 
@@ -52,16 +64,26 @@ problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::
     for (std::optional<problem::Field>& component : boundaries[tag].displacement)
       if (component) component = problem::Field(0.0);
     boundaries[tag].contact.reset();
+    if (boundaries[tag].spring) boundaries[tag].spring->rest = {};
     change_boundary(static_cast<int>(tag), boundaries[tag]);
   }
   return {mesh, regions, boundaries};
 }
 
-template <int dim>
-void unload(problem::BoundaryCondition<dim>& boundary)
+/// The problem without loads, but with load(boundary) on one boundary.
+template <int dim, class Load>
+problem::Problem<dim> unloaded(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int tag,
+                               const Load& load)
 {
-  boundary.traction = {};
-  boundary.pressure.reset();
+  return changed<dim>(
+      problem, mesh,
+      [&](int number, problem::BoundaryCondition<dim>& boundary)
+      {
+        boundary.traction = {};
+        boundary.pressure.reset();
+        if (number == tag) load(boundary);
+      },
+      [](problem::Region<dim>& region) { region.body_force = {}; });
 }
 
 }  // namespace
@@ -77,14 +99,22 @@ template <int dim>
 problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int tag,
                                    const Point<dim>& q)
 {
-  return changed<dim>(
-      problem, mesh,
-      [&](int number, problem::BoundaryCondition<dim>& boundary)
-      {
-        unload(boundary);
-        for (int a = 0; a < dim && number == tag; ++a) boundary.traction[a] = problem::Field(q[a]);
-      },
-      [](problem::Region<dim>& region) { region.body_force = {}; });
+  return unloaded<dim>(problem, mesh, tag,
+                       [&](problem::BoundaryCondition<dim>& boundary)
+                       {
+                         for (int a = 0; a < dim; ++a) boundary.traction[a] = problem::Field(q[a]);
+                       });
+}
+
+template <int dim>
+problem::Problem<dim> with_spring_moved(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                        int tag, const Point<dim>& e)
+{
+  return unloaded<dim>(problem, mesh, tag,
+                       [&](problem::BoundaryCondition<dim>& boundary)
+                       {
+                         for (int a = 0; a < dim; ++a) boundary.spring->rest[a] = problem::Field(-e[a]);
+                       });
 }
 
 template <int dim>
@@ -103,5 +133,9 @@ template problem::Problem<2> with_load_on(const problem::Problem<2>&, const mesh
                                           const Point<2>&);
 template problem::Problem<3> with_load_on(const problem::Problem<3>&, const mesh::Mesh<3>&, int,
                                           const Point<3>&);
+template problem::Problem<2> with_spring_moved(const problem::Problem<2>&, const mesh::Mesh<2>&, int,
+                                               const Point<2>&);
+template problem::Problem<3> with_spring_moved(const problem::Problem<3>&, const mesh::Mesh<3>&, int,
+                                               const Point<3>&);
 
 }  // namespace tribound::certify

@@ -13,6 +13,7 @@
 #include "tribound/certify/energy/dual_products.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -35,14 +36,18 @@ class DualProblem
   /// anything.
   [[nodiscard]] Stress<dim> balanced(std::span<const double> z, std::span<const Point<dim>> t,
                                      std::string& reason) const;
+  /// ||O|| of what this stress lacks of loads and springs that are no polynomials of low degree.
+  [[nodiscard]] double oscillation(std::span<const double> z) const;
 
  private:
   problem::Problem<dim> problem_;
   contact::NitscheForm<dim> form_;
+  contact::Springs<dim> springs_;
   std::unique_ptr<Equilibrator<dim>> equilibrator_;
 };
 
-/// Without loads, with those of the problem, or with the traction q on one boundary; always without contact.
+/// Without loads, with those of the problem, with the traction q on one boundary, or with -(K e, w) on the
+/// spring of one; always without contact, and otherwise springs that rest at 0.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> without_loads(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);
@@ -52,5 +57,9 @@ template <int dim>
 template <int dim>
 [[nodiscard]] problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem,
                                                  const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q);
+template <int dim>
+[[nodiscard]] problem::Problem<dim> with_spring_moved(const problem::Problem<dim>& problem,
+                                                      const mesh::Mesh<dim>& mesh, int tag,
+                                                      const Point<dim>& e);
 
 }  // namespace tribound::certify

@@ -23,6 +23,7 @@ struct DualPair
   /// stress; absent: 0.
   std::optional<Stress<dim>> stress{};
   std::vector<double> target{};
+  double oscillation = 0;  ///< ||O|| of the loads and springs that zeta does not carry, over all ranks
 };
 
 /// Per own cell; tau is the admissible stress nearest to sigma(v), products are those of C^{-1}.

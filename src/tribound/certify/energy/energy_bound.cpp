@@ -20,6 +20,7 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/form_history.h"
 #include "tribound/contact/nitsche/residual.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/mesh.h"
 
@@ -65,15 +66,16 @@ template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
   Parts(const contact::NitscheForm<dim>& given, const algebra::SolverOptions& solver, bool has_quantities,
-        double korn, PatchStress patches)
+        double of_body, PatchStress patches)
       : form(given.space().degree() >= lowest_degree ? given : richer(given)),
         equilibrator(form, patches),
         systems(form, solver, has_quantities),
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
+        springs(form.problem(), form.space()),
         terms(form, ContactRule::reference),
-        oscillation(load_oscillation(form, korn))
+        korn(of_body)
   {
   }
 
@@ -94,8 +96,9 @@ struct EnergyEstimator<dim>::Parts
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
+  contact::Springs<dim> springs;
   ContactTerms<dim> terms;
-  LoadOscillation oscillation;
+  double korn;
 };
 
 template <int dim>
@@ -110,8 +113,8 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!korn) korn = korn_constant(form.problem(), form.space().mesh());
   parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
-  if (!std::isfinite(parts_->oscillation.missed))
-    reason_ = "quadrature may miss a part of the loads, and contact alone holds a body";
+  if (!parts_->springs.has_polynomial_stiffness())
+    reason_ = "the stiffness of a spring is no polynomial of degree 2";
   if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
@@ -122,22 +125,26 @@ EnergyEstimator<dim>::~EnergyEstimator() = default;
 namespace
 {
 
-/// E of v and the stress that carries t_h, and the bounds that follow.
+/// E of v and the stress that carries t_h and the springs at u~, and the bounds that follow.
 template <int dim, class Parts>
 EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
-                       std::span<const double> transfer, std::span<const double> u, std::span<const double> v)
+                       std::span<const double> transfer, const LoadOscillation& loads,
+                       std::span<const double> u, std::span<const double> balanced, std::span<const double> v)
 {
   const contact::NitscheForm<dim>& form = parts.form;
   CellDistances cells;
   fem::with_degree<lowest_degree>(form.space().degree(),
                                   [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
+  std::vector<double> apart(v.begin(), v.end());  // of the springs at v and at u~
+  for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= balanced[i];
+  parts.springs.add_products(apart, apart, cells.square);
   EnergyBound result;
   result.cells = cells.square;
   std::array<double, 7> sums{};  // ||tau - sigma(v)||^2, A^2, ||O||^2, of transfer, ||c||^2, dist^2, G_c
   auto& [square, a_square, o_square, e_square, c_square, dist_square, g] = sums;
   for (std::size_t k = 0; k < cells.square.size(); ++k)
   {
-    const double o = parts.oscillation.cells[k] + transfer[k];
+    const double o = loads.cells[k] + transfer[k];
     square += cells.square[k];
     result.cells[k] = std::pow(std::sqrt(cells.square[k]) + o, 2);
     a_square += result.cells[k];
@@ -156,9 +163,9 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   ranks.sum(std::span(sums));
   result.cell_balance = ranks.max(cells.unbalanced);
   if (!(result.cell_balance <= cell_balance_limit)) result.reason = "a cell does not balance";
-  const double a = std::sqrt(a_square) + parts.oscillation.missed;
+  const double a = std::sqrt(a_square) + loads.missed;
   result.contact = g;
-  result.oscillation = std::sqrt(o_square) + parts.oscillation.missed;
+  result.oscillation = std::sqrt(o_square) + loads.missed;
   result.transfer = std::sqrt(e_square);
   result.correction = std::sqrt(c_square);
   result.dist = std::sqrt(dist_square);
@@ -216,12 +223,15 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};
   const std::vector<double> transfer = transfer_oscillation<dim>(form, parts_->terms, t_h.at_points);
+  const LoadOscillation loads = load_oscillation<dim>(form, parts_->springs, balanced, parts_->korn);
+  if (!std::isfinite(loads.missed))
+    return {.reason = "quadrature may miss a part of the loads, and contact or springs alone hold a body"};
   EnergyBound best{.reason = "no displacement near the computed one is admissible"};
   for (const bool is_open : {true, false})
   {
     const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;
     if (!candidate || (!is_open && !v.has_transition && v.open)) continue;
-    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, transfer, rich_u, *candidate);
+    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, transfer, loads, rich_u, balanced, *candidate);
     bound.is_open = is_open;
     if (!best.reason.empty() || (bound.reason.empty() && bound.bound < best.bound)) best = std::move(bound);
   }
@@ -232,7 +242,8 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
                                     { return problem::cone(segment.contact->law).coefficient > 0; })))
     best.target = EnergyTarget::computed_friction;
   if (best.reason.empty())
-    use(BoundedState<dim>(form, parts_->facets, best.is_open ? *v.open : *v.closed, stress, t_h, best));
+    use(BoundedState<dim>(form, parts_->facets, parts_->springs, best.is_open ? *v.open : *v.closed, balanced,
+                          stress, t_h, best));
   return best;
 }
 

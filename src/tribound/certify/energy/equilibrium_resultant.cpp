@@ -13,7 +13,7 @@ namespace tribound::certify
 namespace
 {
 
-/// Which bodies have contact facets of the resultant, the same on all ranks.
+/// Which bodies have contact facets or springs of the resultant, the same on all ranks.
 template <int dim>
 std::vector<double> moved_bodies(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
                                  const ContactResultant<dim>& resultant)
@@ -21,8 +21,21 @@ std::vector<double> moved_bodies(const contact::NitscheForm<dim>& form, const me
   std::vector<double> moved(bodies.n, 0.0);
   for (const contact::ContactSegment<dim>& segment : form.segments())
     if (resultant.has(segment.slave.facet.tag)) moved[bodies.of_cell[segment.slave.facet.cell]] = 1;
+  for (const mesh::BoundaryFacet& facet : form.space().mesh().owned_boundary())
+    if (resultant.has_spring(form.problem(), facet.tag)) moved[bodies.of_cell[facet.cell]] = 1;
   form.space().mesh().ranks().max(std::span(moved));
   return moved;
+}
+
+/// Whether the traction of an obstacle on segment k is along a constant N, and the motion across it.
+template <int dim>
+bool slides_along(const contact::NitscheForm<dim>& form, std::size_t k, const RigidMotion<dim>& motion)
+{
+  const contact::ContactSegment<dim>& segment = form.segments()[k];
+  if (segment.master || segment.varying_normal || problem::cone(segment.contact->law).resists_sliding())
+    return false;
+  return std::ranges::all_of(form.contact_points(k), [&](const contact::ContactPoint<dim>& point)
+                             { return motion(point.x).dot(point.normal) == 0; });
 }
 
 /// Whether anything but the facets of the resultant acts on the bodies in the motion.
@@ -32,16 +45,21 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const auto moves = [&](const mesh::BoundaryFacet& facet) { return moved[bodies.of_cell[facet.cell]] != 0; };
-  const bool by_contact =
-      std::ranges::any_of(form.segments(),
-                          [&](const contact::ContactSegment<dim>& segment)
-                          {
-                            return (moves(segment.slave.facet) && !resultant.has(segment.slave.facet.tag)) ||
-                                   (segment.master && moves(segment.master->facet));
-                          });
+  bool by_contact = false;
+  for (std::size_t k = 0; k < form.segments().size() && !by_contact; ++k)
+  {
+    const contact::ContactSegment<dim>& segment = form.segments()[k];
+    const bool is_other = !resultant.has(segment.slave.facet.tag);
+    const bool acts =
+        (moves(segment.slave.facet) && is_other) || (segment.master && moves(segment.master->facet));
+    by_contact = acts && !(is_other && slides_along(form, k, resultant.motion));
+  }
   bool by_conditions = false;
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
-    if (const auto& condition = form.problem().boundary(facet.tag); condition.fixes_any() && moves(facet))
+    if (const auto& condition = form.problem().boundary(facet.tag);
+        condition.spring && !resultant.has_spring(form.problem(), facet.tag) && moves(facet))
+      by_conditions = true;
+    else if (condition.fixes_any() && moves(facet))
       for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
         for (int a = 0; a < dim; ++a)
           by_conditions = by_conditions || (condition.fixes(a) && resultant.motion(mesh.vertex(v))[a] != 0);

@@ -54,14 +54,15 @@ std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     const auto& boundary = problem.boundary(facet.tag);
-    if (!boundary.fixes_any()) continue;
+    if (!boundary.holds_any()) continue;
+    const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     const int body = bodies.of_cell[facet.cell];
     Eigen::Map<Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(body) * n * n]);
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {
-      const auto motions = modes[body].at(mesh.vertex(v));
-      for (int c = 0; c < dim; ++c)
-        if (boundary.fixes(c)) gram += motions.row(c).transpose() * motions.row(c);
+      const Point<dim> x = mesh.vertex(v);
+      const Eigen::Matrix<double, dim, n> motions = boundary.held(x, normal) * modes[body].at(x);
+      gram += motions.transpose() * motions;
     }
   }
   mesh.ranks().sum(std::span(grams));

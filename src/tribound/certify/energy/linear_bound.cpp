@@ -11,11 +11,14 @@ namespace tribound::certify
 
 template <int dim>
 BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const ObstacleFacets<dim>& on,
-                                std::span<const double> displacement, const Stress<dim>& equilibrated,
+                                const contact::Springs<dim>& elastic, std::span<const double> displacement,
+                                std::span<const double> of_stress, const Stress<dim>& equilibrated,
                                 const AdmissibleTraction<dim>& traction, const EnergyBound& energy)
     : form(of),
       facets(on),
+      springs(elastic),
       v(displacement),
+      balanced(of_stress),
       stress(equilibrated),
       t_h(traction),
       bound(energy),
@@ -39,12 +42,35 @@ std::vector<double> BoundedState<dim>::shares(double half_width) const
 }
 
 template <int dim>
-DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair)
+DualProducts products_of_stresses(const BoundedState<dim>& state, const DualPair<dim>& pair)
 {
   DualProducts result;
   constexpr int lowest = 2;
   fem::with_degree<lowest>(state.form.space().degree(), [&](auto q)
                            { result = dual_products<dim, q>(state.form, state.stress, state.v, pair); });
+  return result;
+}
+
+template <int dim>
+DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair)
+{
+  DualProducts result = products_of_stresses(state, pair);
+  if (state.springs.facets().empty()) return result;
+  const std::size_t n = pair.z.size();
+  std::vector<double> mean(n, 0.0);   // of z and the target
+  std::vector<double> apart(n, 0.0);  // target less z
+  std::vector<double> error(n, 0.0);  // u~ less v
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double target = pair.stress ? pair.target[i] : 0;
+    mean[i] = (target + pair.z[i]) / 2;
+    apart[i] = target - pair.z[i];
+    error[i] = state.balanced[i] - state.v[i];
+  }
+  state.springs.add_products(mean, error, result.centre);
+  state.springs.add_products(apart, apart, result.square);
+  state.springs.add_products(state.balanced, pair.z, result.work);
+  state.springs.add_products(pair.z, pair.z, result.energy);
   return result;
 }
 
@@ -78,7 +104,7 @@ LinearBound linear_bound(const BoundedState<dim>& state, double base, const Dual
   constexpr double unit = 1e-13;
   LinearBound result{.centre = base + sums.centre + state.remainder(pair.z, sums.work),
                      .radius = (is_second_order ? m * mid * mid + sums.square / (4 * m) : eta * mid) +
-                               state.unresolved * std::sqrt(sums.energy),
+                               state.unresolved * std::sqrt(sums.energy) + pair.oscillation * state.bound.b_v,
                      .rounding = unit * (std::abs(base) + sums.absolute)};
   if (!is_second_order)
     result.cells = state.shares(result.radius);
@@ -90,6 +116,8 @@ LinearBound linear_bound(const BoundedState<dim>& state, double base, const Dual
 
 template struct BoundedState<2>;
 template struct BoundedState<3>;
+template DualProducts products_of_stresses(const BoundedState<2>&, const DualPair<2>&);
+template DualProducts products_of_stresses(const BoundedState<3>&, const DualPair<3>&);
 template DualProducts dual_products(const BoundedState<2>&, const DualPair<2>&);
 template DualProducts dual_products(const BoundedState<3>&, const DualPair<3>&);
 template LinearBound linear_bound(const BoundedState<2>&, double, const DualPair<2>&, const DualProducts&,

@@ -9,6 +9,7 @@
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/certify/energy/dual_products.h"
 #include "tribound/certify/energy/energy_bound.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -19,8 +20,10 @@ struct BoundedState
 {
   const contact::NitscheForm<dim>& form;
   const ObstacleFacets<dim>& facets;
+  const contact::Springs<dim>& springs;
   std::span<const double> v;
-  const Stress<dim>& stress;  ///< equilibrated; tau is made from it
+  std::span<const double> balanced;  ///< u~, to which the springs with the equilibrated stress belong
+  const Stress<dim>& stress;         ///< equilibrated; tau is made from it
   const AdmissibleTraction<dim>& t_h;
   const EnergyBound& bound;
   std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C
@@ -29,8 +32,9 @@ struct BoundedState
   double unresolved;
 
   BoundedState(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
-               std::span<const double> v, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
-               const EnergyBound& bound);
+               const contact::Springs<dim>& springs, std::span<const double> v,
+               std::span<const double> balanced, const Stress<dim>& stress,
+               const AdmissibleTraction<dim>& t_h, const EnergyBound& bound);
 
   /// L(z) + (t_h, z)_C - (tau, eps(z)): the effect of data that are not polynomials, and rounding.
   [[nodiscard]] double remainder(std::span<const double> z, double work) const
@@ -41,7 +45,10 @@ struct BoundedState
   [[nodiscard]] std::vector<double> shares(double half_width) const;
 };
 
-/// dual_products() for the degree of the form.
+/// dual_products() for the degree of the form, without the springs; and with them: pairs of a stress and a
+/// force on S with products (., .)_{C^-1} + (K^-1 ., .)_S, (sigma(z), K z) for sigma(z).
+template <int dim>
+[[nodiscard]] DualProducts products_of_stresses(const BoundedState<dim>& state, const DualPair<dim>& pair);
 template <int dim>
 [[nodiscard]] DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair);
 
@@ -70,7 +77,8 @@ struct LinearBound
 /// Gamma_C, and v and t_h satisfy there
 ///     |(sigma(u) n - t_h) . y - r . (u - v)| <= m (the four integrands on Gamma_C of method section 13.1),
 /// the centre is base + 1/2 (zeta + sigma(z), tau - sigma(v)) + remainder(z), and the radius the largest eta
-/// x + m (mid^2 - x^2) for 0 <= x <= mid, with eta = ||zeta - sigma(z)||; m = 0 if y and r vanish.
+/// x + m (mid^2 - x^2) for 0 <= x <= mid, with eta = ||zeta - sigma(z)||, and ||O|| B_v for what zeta
+/// lacks; m = 0 if y and r vanish.
 template <int dim>
 [[nodiscard]] LinearBound linear_bound(const BoundedState<dim>& state, double base, const DualPair<dim>& pair,
                                        const DualProducts& products, double m = 0);

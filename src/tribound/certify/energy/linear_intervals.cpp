@@ -251,6 +251,7 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
   if (!(space.norm(load) > 0)) return result;
   result.target = systems_.solve(OnContact::free, load, std::vector<double>(space.n_dofs(), 0.0), tight);
   result.stress = dual.balanced(result.target, t, reason);
+  result.oscillation = dual.oscillation(result.target);
   return result;
 }
 

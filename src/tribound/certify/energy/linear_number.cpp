@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "tribound/contact/nitsche/residual.h"
+
 namespace tribound::certify
 {
 
@@ -10,7 +12,9 @@ double LinearNumber<dim>::base(const BoundedState<dim>& state, const QuantityPar
 {
   if (weight) return contact_work<dim>(state.form, state.t_h.at_points, weight->at_points);
   if (parts.quantity.kind == problem::QuantityKind::load_work)
-    return state.form.space().dot(state.form.load(), state.v);
+    return contact::load_work<dim>(state.form, state.v);
+  if (parts.quantity.kind == problem::QuantityKind::spring_force)
+    return state.springs.force(parts.tag, state.v).dot(parts.direction);
   return mean_displacement<dim>(state.form, parts, state.v);
 }
 
@@ -31,11 +35,19 @@ LinearNumber<dim> loaded_number(const QuantityParts<dim>& parts, const contact::
 {
   const mesh::Mesh<dim>& mesh = bounded.space().mesh();
   const problem::Problem<dim>& problem = bounded.problem();
-  const bool is_work = parts.quantity.kind == problem::QuantityKind::load_work;
-  return {.loads = std::make_unique<DualProblem<dim>>(
-              bounded, is_work
-                           ? with_loads<dim>(problem, mesh)
-                           : with_load_on<dim>(problem, mesh, parts.tag, parts.direction / parts.measure))};
+  const auto loaded = [&]
+  {
+    switch (parts.quantity.kind)
+    {
+      case problem::QuantityKind::load_work:
+        return with_loads<dim>(problem, mesh);
+      case problem::QuantityKind::spring_force:
+        return with_spring_moved<dim>(problem, mesh, parts.tag, parts.direction);
+      default:
+        return with_load_on<dim>(problem, mesh, parts.tag, parts.direction / parts.measure);
+    }
+  };
+  return {.loads = std::make_unique<DualProblem<dim>>(bounded, loaded())};
 }
 
 template struct LinearNumber<2>;

@@ -38,7 +38,7 @@ template <int dim>
                                      const ContactWeights<dim>& weights,
                                      const ContactResultant<dim>& resultant, double ramp);
 
-/// A mean displacement or the work of the loads. All ranks together.
+/// A mean displacement, the work of the loads or the force of a spring. All ranks together.
 template <int dim>
 [[nodiscard]] LinearNumber<dim> loaded_number(const QuantityParts<dim>& parts,
                                               const contact::NitscheForm<dim>& bounded);

@@ -32,12 +32,13 @@ double stiffness_of(const contact::NitscheForm<dim>& form, Index cell)
 
 }  // namespace
 
-/// f - Pi f and g_N - Pi g_N are orthogonal to rigid motions by quadrature. Their projections on them are at
+/// f - Pi f and g - Pi g are orthogonal to rigid motions by quadrature. Their projections on them are at
 /// most (d + 1) e_T |T|^{-1/2} and d e_F |F|^{-1/2}, if e bounds what it misses, since affine functions are
 /// at most n + 1 times their root mean square on simplices with n + 1 vertices. That on F is tested with w
 /// less the nearest rigid motion r on T, and with r.
 template <int dim>
-LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double korn)
+LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, const contact::Springs<dim>& springs,
+                                 std::span<const double> u, double korn)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const contact::DiscreteData<dim>& data = form.data();
@@ -52,7 +53,7 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double k
   }
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
-    const auto [oscillation, mean] = data.traction_remainder(k);
+    const auto [oscillation, mean] = contact::traction_remainder(data, springs, k, u);
     if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     const PoincareKorn<dim> of_cell = constants_of(mesh, facet.cell);
@@ -138,8 +139,10 @@ std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
   return result;
 }
 
-template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, double);
-template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, double);
+template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, const contact::Springs<2>&,
+                                          std::span<const double>, double);
+template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, const contact::Springs<3>&,
+                                          std::span<const double>, double);
 
 template std::vector<double> transfer_oscillation(const contact::NitscheForm<2>&, const ContactTerms<2>&,
                                                   std::span<const Point<2>>);

@@ -9,12 +9,13 @@
 
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
 
-/// |(f - Pi f, w) + (g_N - Pi g_N, w)_N| <= sum_T O_T ||w||_en,T + missed ||w||_en for all w that vanish
-/// where Gamma_D fixes them.
+/// |(f - Pi f, w) + (g - Pi g, w)_N| <= sum_T O_T ||w||_en,T + missed ||w||_en for all w that vanish where
+/// Gamma_D fixes them, g = g_N - K (u - u_0).
 struct LoadOscillation
 {
   std::vector<double> cells;  ///< O_T of the own cells
@@ -23,7 +24,9 @@ struct LoadOscillation
 
 /// `korn` is K of certify/bound/korn.h. All ranks together.
 template <int dim>
-[[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, double korn);
+[[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form,
+                                               const contact::Springs<dim>& springs,
+                                               std::span<const double> u, double korn);
 
 /// |(t, [w])_C - (Pi_F t, w)_S + (Pi_G t, w)_M| <= sum_T e_T ||w||_en,T: e_T of the own cells, for t at the
 /// contact points, Pi_F and Pi_G the projections of the tractions on the facets of slave and master, method

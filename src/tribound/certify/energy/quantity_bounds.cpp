@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribound/certify/energy/energy_interval.h"
+#include "tribound/contact/nitsche/residual.h"
 
 namespace tribound::certify
 {
@@ -40,6 +41,10 @@ QuantityBounds<dim>::QuantityBounds(const contact::NitscheForm<dim>& form,
     item.parts = parts_of(form, quantity);
     item.reason = item.parts.reason;
     if (!item.reason.empty()) continue;
+    if (item.kind() == QuantityKind::spring_force)
+      if (const auto known = certify::from_equilibrium<dim>(
+              form, {.tag = item.parts.tag, .motion = {.translation = item.parts.direction}}))
+        item.numbers.push_back({.known = known});
     for (const ContactResultant<dim>& resultant : item.parts.resultants)
     {
       LinearNumber<dim>& number = item.numbers.emplace_back();
@@ -80,7 +85,7 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, cons
   std::optional<ContactWeights<dim>> weights;
   for (Item& item : items_)
   {
-    if (is_energy(item) || !item.reason.empty()) continue;
+    if (is_energy(item) || !item.reason.empty() || item.is_known()) continue;
     if (item.parts.resultants.empty() && !is_held)
     {
       item.reason = "contact alone holds a body";  // else the load of the dual problem would move it
@@ -118,9 +123,13 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
     case QuantityKind::energy:
       return contact::stress_norms<dim>(form_.problem(), form_.space(), u).energy;
     case QuantityKind::load_work:
-      return form_.space().dot(form_.load(), u);
+      return contact::load_work<dim>(form_, u);
     case QuantityKind::mean_displacement:
       return mean_displacement<dim>(form_, item.parts, u);
+    case QuantityKind::spring_force:
+      return contact::Springs<dim>(form_.problem(), form_.space())
+          .force(item.parts.tag, u)
+          .dot(item.parts.direction);
     case QuantityKind::contact_force:
     case QuantityKind::contact_moment:
       return of_contact(0);
@@ -208,12 +217,13 @@ QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumb
   if (number.known) return known_interval(*number.known);
   const bool is_work = item.kind() == QuantityKind::load_work;
   if (is_work && state.unresolved > 0) return {.reason = "the loads are no polynomials of low degree"};
+  if (item.kind() == QuantityKind::spring_force && !state.springs.has_polynomial_rest())
+    return {.reason = "where the spring rests is no polynomial of low degree"};
   const LinearInterval of_number = intervals(number, number.base(state, item.parts));
   if (!of_number.reason.empty()) return {.reason = of_number.reason};
-  const double of_loads = is_work ? state.bound.oscillation * state.bound.b_v : 0;
   QuantityInterval result{.basis = of_number.is_second_order ? "second order" : "energy bound",
                           .cells = of_number.cells};
-  set_ends(result, of_number.lower - of_loads, of_number.upper + of_loads, of_number.rounding);
+  set_ends(result, of_number.lower, of_number.upper, of_number.rounding);
   return result;
 }
 

@@ -23,7 +23,7 @@ struct QuantityParts
       resultants;                             ///< of forces and moments; safety factors: N, then those of H
   double coefficient = 0;                     ///< mu_F of safety factors
   KnownNumber uplift{};                       ///< U = integral of p_w for safety factors
-  Point<dim> direction = Point<dim>::Zero();  ///< e of mean displacements, a unit vector
+  Point<dim> direction = Point<dim>::Zero();  ///< e of mean displacements and springs, a unit vector
   double measure = 0;                         ///< of their boundary
   std::string note{};                         ///< what else its value depends on
   std::string reason{};                       ///< why it is not a number; empty: it is one

@@ -11,6 +11,7 @@
 #include "tribound/certify/equilibrate/reference.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -28,7 +29,8 @@ class FacetData
   using Moments = std::array<FacetVector, dim>;
 
   /// `tractions`: what the parts of the stress carry on Gamma_C, at the contact points of the form.
-  FacetData(const contact::NitscheForm<dim>& form, typename Stress<dim>::Tractions tractions);
+  FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u,
+            typename Stress<dim>::Tractions tractions);
 
   [[nodiscard]] bool is_boundary(Index facet) const { return number_[facet] >= 0; }
   /// Whether Gamma_D fixes the component on the facet.
@@ -70,7 +72,9 @@ class FacetData
   };
   [[nodiscard]] Moments& discretisation_of(Condition& condition);
   /// g_N on a boundary facet.
-  void add_load(const contact::NitscheForm<dim>& form, std::size_t number);
+  /// g_N on a boundary facet, and the springs there.
+  void add_load(const contact::NitscheForm<dim>& form, std::size_t number,
+                std::span<const Point<dim>> springs);
   /// What segment k exerts on the facet of one of its sides.
   void add_contact(const contact::NitscheForm<dim>& form, std::size_t k,
                    const contact::SegmentSide<dim>& side);

@@ -64,7 +64,8 @@ class FacetMoments
 }  // namespace detail
 
 template <int dim, int p>
-FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, typename Stress<dim>::Tractions tractions)
+FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                             typename Stress<dim>::Tractions tractions)
     : number_(form.space().mesh().topology().facets.size(), -1),
       tractions_(std::move(tractions)),
       on_contact_(form.space().mesh().n_vertices(), 0),
@@ -73,13 +74,18 @@ FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, typename Str
                                          : 1)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const contact::Springs<dim> springs(form.problem(), form.space());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     Condition& condition = conditions_.emplace_back();
     number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(number);
     for (int c = 0; c < dim; ++c) condition.fixed[c] = form.problem().boundary(facet.tag).fixes(c);
-    if (form.data().has_traction(number)) add_load(form, number);
+    const std::size_t first = tractions_.springs.size();
+    if (const contact::SpringFacet<dim>* spring = springs.on(number))
+      for (std::size_t q = 0; q < spring->weights.size(); ++q)
+        tractions_.springs.push_back(springs.traction(*spring, u, static_cast<int>(q)));
+    add_load(form, number, std::span(tractions_.springs).subspan(first));
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side([&](const contact::SegmentSide<dim>& side)
@@ -98,8 +104,10 @@ auto FacetData<dim, p>::discretisation_of(Condition& condition) -> Moments&
 }
 
 template <int dim, int p>
-void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::size_t number)
+void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::size_t number,
+                                 std::span<const Point<dim>> springs)
 {
+  if (springs.empty() && !form.data().has_traction(number)) return;
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const mesh::BoundaryFacet& facet = mesh.boundary()[number];
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
@@ -110,7 +118,7 @@ void FacetData<dim, p>::add_load(const contact::NitscheForm<dim>& form, std::siz
   for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
   {
     on_facet.at(rule.points[q]);
-    on_facet.add(dx, load[q], moments);
+    on_facet.add(dx, springs.empty() ? load[q] : Point<dim>(load[q] + springs[q]), moments);
   }
 }
 

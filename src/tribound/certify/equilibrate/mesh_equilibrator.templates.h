@@ -175,7 +175,7 @@ class MeshEquilibrator : public Equilibrator<Patch::Kind::dim>::Implementation
   Stress<dim> run(std::span<const double> u, typename Stress<dim>::Tractions tractions, bool with_dis,
                   std::span<const Tensor<dim>> turning) override
   {
-    const FacetData<dim, p> data(form_, std::move(tractions));
+    const FacetData<dim, p> data(form_, u, std::move(tractions));
     std::optional<VertexPartition>& partition = with_dis ? all_ : on_contact_;
     if (!partition)
     {

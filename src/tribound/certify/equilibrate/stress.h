@@ -43,9 +43,10 @@ struct Stress
   /// What the parts carry on Gamma_C up to projection, at the contact points.
   struct Tractions
   {
-    std::vector<Point<dim>> dis;  ///< T(u^k)
-    std::vector<Point<dim>> lin;  ///< t^k - T_delta(u^k)
-    std::vector<Point<dim>> reg;  ///< T_delta(u^k) - T(u^k); empty unless T was regularised
+    std::vector<Point<dim>> dis;        ///< T(u^k)
+    std::vector<Point<dim>> lin;        ///< t^k - T_delta(u^k)
+    std::vector<Point<dim>> reg;        ///< T_delta(u^k) - T(u^k); empty unless T was regularised
+    std::vector<Point<dim>> springs{};  ///< -K (u^k - u_0) at the points of contact::Springs::facets()
 
     /// Their sum t^k.
     [[nodiscard]] std::vector<Point<dim>> running() const

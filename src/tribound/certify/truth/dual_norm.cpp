@@ -57,6 +57,7 @@ void add_block(std::span<const Index> nodes, const std::vector<char>& fixed, std
 template <int dim>
 DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace& richer)
     : form_(form),
+      n_refinements_(richer.refinements),
       refined_(mesh::refine_uniformly(form.space().mesh(), richer.refinements)),
       space_(refined_.mesh, richer.degree)
 {
@@ -112,7 +113,8 @@ void DualNorm<dim>::find_operators()
   }
 }
 
-/// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k between free nodes; the diagonal everywhere.
+/// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k + sum_F (1/h_F) (phi_j, phi_i)_F between
+/// free nodes, k the segments and F the facets of the coarse mesh on springs; the diagonal everywhere.
 template <int dim>
 algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
 {
@@ -153,7 +155,32 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) cons
         Eigen::Map<const Eigen::VectorXd>(rule.weights.data(), rule.size()).asDiagonal() * jumps;
     add_block(nodes, fixed, std::span(mass.data(), static_cast<std::size_t>(mass.size())), entries);
   }
+  add_springs(fixed, entries);
   return {space_.n_nodes(), 1, std::move(entries)};
+}
+
+/// Uniform refinement halves the diameters of facets.
+template <int dim>
+void DualNorm<dim>::add_springs(const std::vector<char>& fixed, algebra::Triplets& entries) const
+{
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * space_.degree());
+  const fem::FacetTabulation<dim> tables = fem::tabulate_on_facets<dim>(space_.basis(), rule.points);
+  const auto n = static_cast<std::size_t>(space_.basis().n_nodes());
+  std::vector<double> block(n * n);
+  for (const mesh::BoundaryFacet& facet : space_.mesh().boundary())
+  {
+    if (!form_.problem().boundary(facet.tag).spring) continue;
+    const double h =
+        std::ldexp(mesh::facet_geometry(space_.mesh(), facet.cell, facet.local).diameter, n_refinements_);
+    std::ranges::fill(block, 0.0);
+    for (const auto& [q, x, dx] : fem::facet_points(space_.mesh(), facet.cell, facet.local, rule))
+    {
+      const std::span<const double> phi = tables.on_facet[facet.local].values_at(q);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) block[i * n + j] += dx / h * phi[i] * phi[j];
+    }
+    add_block(space_.cell_nodes(facet.cell), fixed, block, entries);
+  }
 }
 
 /// vector_i += (T(u), [phi_i])_C.

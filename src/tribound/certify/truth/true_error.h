@@ -80,9 +80,12 @@ class DualNorm
 
   void find_operators();
   [[nodiscard]] algebra::SparseMatrix matrix(const std::vector<char>& fixed) const;
+  /// The terms of springs.
+  void add_springs(const std::vector<char>& fixed, algebra::Triplets& entries) const;
   void add_contact_load(std::span<const double> u, std::span<double> vector) const;
 
   const contact::NitscheForm<dim>& form_;
+  int n_refinements_;
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
   std::vector<double> load_;  ///< L(phi_i); computed when first needed

@@ -120,7 +120,10 @@ void DiscreteData<dim>::count_formulas(Segments segments)
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(problem_, mesh_, c), true);
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
+  {
     count(traction_datum(problem_, mesh_, facet), true);
+    if (const auto& spring = problem_.boundary(facet.tag).spring) count(spring_datum(*spring), true);
+  }
   for (const ContactSegment<dim>& segment : segments)
   {
     if (!is_owned(mesh_, segment)) continue;

@@ -79,6 +79,7 @@ class DiscreteData
   DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
                std::span<const ContactSegment<dim>> segments, const DataAccuracy& accuracy = {});
 
+  [[nodiscard]] const problem::Problem<dim>& problem() const { return problem_; }
   [[nodiscard]] const fem::Quadrature<dim>& cell_rule() const { return cell_moments_.rule(); }
   [[nodiscard]] const fem::Quadrature<dim - 1>& facet_rule() const { return facet_moments_.rule(); }
 

@@ -7,6 +7,7 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
@@ -58,6 +59,7 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
       }
     }
   }
+  Springs<dim>(problem, space).add_forces(u, result);
   return result;
 }
 
@@ -98,6 +100,43 @@ double stress_that_matters(const problem::Problem<dim>& problem, const fem::Lagr
          std::sqrt(mesh.ranks().sum(volume));
 }
 
+/// (f, phi_i) + (g_N, phi_i)_N.
+template <int dim>
+std::vector<double> assemble_given_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  std::vector<double> load(space.n_dofs(), 0.0);
+
+  // (f, phi_i)
+  const fem::Quadrature<dim>& cell_rule = data.cell_rule();
+  const fem::Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
+  std::vector<Point<dim>> f(cell_rule.size());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    if (!data.has_body_force(c)) continue;
+    data.body_force(c, f);
+    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), cell_rule))
+      fem::add_at_point<dim>(space.cell_nodes(c), cell_table.values_at(q), dx * f[q], load);
+  }
+
+  // (g_N, phi_i)_N
+  const fem::Quadrature<dim - 1>& facet_rule = data.facet_rule();
+  const fem::FacetTabulation<dim> facet_table =
+      fem::tabulate_on_facets<dim>(space.basis(), facet_rule.points);
+  std::vector<Point<dim>> g(facet_rule.size());
+  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
+  {
+    if (!data.has_traction(k)) continue;
+    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
+    data.traction(k, g);
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
+      fem::add_at_point<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
+                             dx * g[q], load);
+  }
+
+  return load;
+}
+
 }  // namespace
 
 template <int dim>
@@ -136,7 +175,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const auto is_loaded = [&]
   {
     const std::vector<double> load =
-        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
+        assemble_given_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
     return mesh.ranks().any(std::ranges::any_of(load, [](double force) { return force != 0; }));
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&
@@ -173,35 +212,8 @@ std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fe
 template <int dim>
 std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
 {
-  const mesh::Mesh<dim>& mesh = space.mesh();
-  std::vector<double> load(space.n_dofs(), 0.0);
-
-  // (f, phi_i)
-  const fem::Quadrature<dim>& cell_rule = data.cell_rule();
-  const fem::Tabulation<dim> cell_table = space.basis().tabulate(cell_rule.points);
-  std::vector<Point<dim>> f(cell_rule.size());
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-  {
-    if (!data.has_body_force(c)) continue;
-    data.body_force(c, f);
-    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), cell_rule))
-      fem::add_at_point<dim>(space.cell_nodes(c), cell_table.values_at(q), dx * f[q], load);
-  }
-
-  // (g_N, phi_i)_N
-  const fem::Quadrature<dim - 1>& facet_rule = data.facet_rule();
-  const fem::FacetTabulation<dim> facet_table =
-      fem::tabulate_on_facets<dim>(space.basis(), facet_rule.points);
-  std::vector<Point<dim>> g(facet_rule.size());
-  for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
-  {
-    if (!data.has_traction(k)) continue;
-    const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    data.traction(k, g);
-    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
-      fem::add_at_point<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
-                             dx * g[q], load);
-  }
+  std::vector<double> load = assemble_given_load(data, space);
+  Springs<dim>(data.problem(), space).add_rest(load);
   return load;
 }
 

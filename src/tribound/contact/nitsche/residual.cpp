@@ -1,6 +1,7 @@
 #include "tribound/contact/nitsche/residual.h"
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::contact
 {
@@ -25,6 +26,16 @@ std::vector<double> residual(const NitscheForm<dim>& form, std::span<const doubl
   return r;
 }
 
+template <int dim>
+double load_work(const NitscheForm<dim>& form, std::span<const double> u)
+{
+  std::vector<double> of_springs(u.size(), 0.0);
+  Springs<dim>(form.problem(), form.space()).add_rest(of_springs);
+  return form.space().dot(form.load(), u) - form.space().dot(of_springs, u);
+}
+
+template double load_work(const NitscheForm<2>&, std::span<const double>);
+template double load_work(const NitscheForm<3>&, std::span<const double>);
 template std::vector<double> unconstrained_residual(const NitscheForm<2>&, std::span<const double>,
                                                     std::span<const Point<2>>);
 template std::vector<double> residual(const NitscheForm<2>&, std::span<const double>,

@@ -23,4 +23,8 @@ template <int dim>
                                                          std::span<const double> u,
                                                          std::span<const Point<dim>> t);
 
+/// (f, u) + (g_N, u)_N.
+template <int dim>
+[[nodiscard]] double load_work(const NitscheForm<dim>& form, std::span<const double> u);
+
 }  // namespace tribound::contact

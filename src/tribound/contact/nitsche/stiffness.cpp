@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
@@ -69,12 +72,15 @@ template <int dim>
 class BlockRow
 {
  public:
-  BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space)
+  BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+           const Springs<dim>& springs)
       : problem_(&problem),
         space_(&space),
+        springs_(&springs),
         reference_(fem::gradient_products(space.basis())),
         index_(space.n_nodes(), -1)
   {
+    for (const SpringFacet<dim>& facet : springs.facets()) on_springs_[facet.cell].push_back(&facet);
   }
 
   void assemble(std::span<const LocalNode> cells)
@@ -88,6 +94,9 @@ class BlockRow
       const std::span<const Index> nodes = space_->cell_nodes(c);
       for (int j = 0; j < n; ++j)
         blocks_[index_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
+      if (const auto held = on_springs_.find(c); held != on_springs_.end())
+        for (const SpringFacet<dim>* facet : held->second)
+          for (int j = 0; j < n; ++j) blocks_[index_[nodes[j]]] += springs_->block(*facet, i, j);
     }
     for (const Index j : neighbours_) index_[j] = -1;
   }
@@ -110,6 +119,8 @@ class BlockRow
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
+  const Springs<dim>* springs_;
+  std::unordered_map<Index, std::vector<const SpringFacet<dim>*>> on_springs_;  ///< by cell
   std::vector<Tensor<dim>> reference_;
   std::vector<Index> index_;  ///< per node: its index among the neighbours, or -1
   std::vector<Index> neighbours_;
@@ -160,6 +171,7 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
 {
   constexpr Index worth_a_thread = 5000;
   const NodeCells cells = cells_around_nodes(space);
+  const Springs<dim> springs(problem, space);
   const Index n = space.n_owned_nodes();
   const int n_parts = std::clamp<int>(n / worth_a_thread, 1, max_threads());
   std::vector<algebra::SparseRows> parts(n_parts);
@@ -167,8 +179,8 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
   in_threads(n_parts,
              [&](int part)
              {
-               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space), space, cells, constraints,
-                                                 begin(part), begin(part + 1));
+               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space, springs), space, cells,
+                                                 constraints, begin(part), begin(part + 1));
              });
   algebra::SparseRows rows = std::move(parts.front());
   for (int part = 1; part < n_parts; ++part) rows.append(std::exchange(parts[part], {}));

@@ -94,13 +94,12 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
     for (const mesh::BoundaryFacet& facet : assembly_.bodies[b].facets)
     {
       const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
-      if (!condition.fixes_any()) continue;
+      if (!condition.holds_any()) continue;
+      const Point<dim> normal = mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
       for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
       {
-        Eigen::MatrixXd z = Eigen::MatrixXd::Zero(dim, RigidModes<dim>::n_modes);
-        const auto modes = assembly_.modes.at(mesh_.vertex(v));
-        for (int a = 0; a < dim; ++a)
-          if (condition.fixes(a)) z.row(a) = modes.row(a);
+        const Point<dim> x = mesh_.vertex(v);
+        const Eigen::MatrixXd z = condition.held(x, normal) * assembly_.modes.at(x);
         grams.add({facet.tag, b}, assembly_.coefficients(b), z);
       }
     }

@@ -135,6 +135,13 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
   if (std::ranges::any_of(condition.traction, [](const problem::Field& t) { return !t.is_zero(); }))
     add("traction " + vector([&](int i) { return problem::words(condition.traction[i]); }) + stress);
   if (condition.pressure) add("pressure " + problem::words(*condition.pressure, stress));
+  if (condition.spring)
+  {
+    const std::string per_length = units.behind(UnitOf::body_force, dim);
+    add(fmt::format("spring {} along the normal, {} across",
+                    problem::words(condition.spring->normal, per_length),
+                    problem::words(condition.spring->tangential, per_length)));
+  }
   if (condition.contact)
     add("contact, " + problem::words(condition.contact->law, units) + ", gap " +
         problem::words(*condition.contact->gap, length) + geometry_words(*condition.contact));

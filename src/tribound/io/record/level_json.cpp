@@ -134,6 +134,7 @@ void add_results(Json& object, const LevelRecord& level)
                                 {"updates", *level.delta_updates}};
   object["identities"] = json(level.identities);
   object["energy"] = level.figures.energy;
+  if (level.figures.spring_energy) object["spring_energy"] = *level.figures.spring_energy;
   object["sigma_norm"] = level.figures.sigma_norm;
   add_energy_error(object, level);
   object["max_displacement"] = level.figures.max_displacement;

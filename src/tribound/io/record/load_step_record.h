@@ -48,7 +48,7 @@ struct LoadStepRecord
   // Sums from the first step on:
   double dissipated = 0;
   double rubbed = 0;
-  double work = 0;  ///< of loads and reactions, by the trapezoidal rule
+  double work = 0;  ///< of loads, reactions and springs, by the trapezoidal rule
   std::vector<std::pair<std::string, double>>
       watched{};       ///< watched quantities of the case; a length times its factors
   double balance = 0;  ///< work - a(u, u) / 2 - stored - dissipated: 0 up to that rule and the discretisation

@@ -79,6 +79,7 @@ struct SolutionFigures
   std::vector<Resultants> boundary_contact;  ///< of every obstacle and slave among the boundary groups
   std::vector<BodyFigures> bodies;           ///< where there are bodies in contact
   double round_off = 0.0;                    ///< a smaller stress is mere rounding
+  std::optional<double> spring_energy{};     ///< (K (u - u_0), u - u_0)_S, not halved; with springs
 };
 
 /// The figures of the solution on a level, with the contact traction T(u). Forces have only the known digits

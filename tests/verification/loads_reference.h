@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file loads_reference.h
+/// Numbers of an independent program for springs, sliders and initial stress: data/loads.json.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/contact/nitsche/springs.h"
+
+namespace tribound::test
+{
+
+/// The energy with that of springs and both norms to 1e-8, the bound to 1e-6, for every degree and mesh of a
+/// case.
+inline void expect_reference(const std::string& name, const ProblemData<2>& data)
+{
+  std::ifstream file(LOADS_REFERENCE);
+  int found = 0;
+  for (const nlohmann::json& expected : nlohmann::json::parse(file))
+  {
+    if (expected["case"] != name) continue;
+    ++found;
+    const DiscreteProblem<2> c(block<2>({expected["nx"], expected["ny"]}), data,
+                               {.degree = expected["p"], .newton = {.tolerance = 1e-12}});
+    const solve::NewtonResult<2> solved = c.solve();
+    const auto near = [&](double value, const char* key, double digits)
+    {
+      const double number = expected[key];
+      EXPECT_NEAR(value, number, digits * number) << name << ", " << key << ", p = " << expected["p"];
+    };
+    const contact::StressNorms norms = contact::stress_norms<2>(c.problem, c.space, solved.u);
+    const double of_springs = contact::Springs<2>(c.problem, c.space).energy(solved.u);
+    near(norms.energy + of_springs, "energy", 1e-8);
+    near(norms.sigma, "sigma_norm", 1e-8);
+    const auto stress =
+        certify::equilibrate<2>(c.form, solved.u, solved.traction, 0, 0, certify::PatchStress::afw);
+    const certify::Estimate bound =
+        certify::estimate<2>(c.form, solved.u, stress, certify::ContactRule::reference);
+    near(bound.total, "bound", 1e-6);
+    if (!expected["dual_norm"].is_null())
+    {
+      EXPECT_GE(bound.total, expected["dual_norm"].get<double>());
+    }
+  }
+  EXPECT_GE(found, 3);
+}
+
+}  // namespace tribound::test
