@@ -60,7 +60,7 @@ std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh
     Eigen::Map<Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(body) * n * n]);
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
     {
-      const Point<dim> x = mesh.vertex(v);
+      const Point<dim>& x = mesh.vertex(v);
       const Eigen::Matrix<double, dim, n> motions = boundary.held(x, normal) * modes[body].at(x);
       gram += motions.transpose() * motions;
     }

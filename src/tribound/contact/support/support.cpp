@@ -98,7 +98,7 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
       const Point<dim> normal = mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
       for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
       {
-        const Point<dim> x = mesh_.vertex(v);
+        const Point<dim>& x = mesh_.vertex(v);
         const Eigen::MatrixXd z = condition.held(x, normal) * assembly_.modes.at(x);
         grams.add({facet.tag, b}, assembly_.coefficients(b), z);
       }
