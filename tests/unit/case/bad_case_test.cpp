@@ -238,6 +238,8 @@ std::vector<BadCase> combinations()
        "case.toml:5:10: boundary.a.spring: ", "has no effect", "\"free\""},
       {"SpringWithoutStiffness", head + "[boundary.a]\nspring = { rest = [0, 0] }\n",
        "case.toml:4:10: boundary.a.spring: ", "has no stiffness", "tangential = 1e6"},
+      {"SpringInTime", head + "[boundary.a]\nspring = '1 - t'\n", "case.toml:4:10: boundary.a.spring: ",
+       "the stiffness of a spring does not change", "the place of rest may move"},
       {"SpringNegative", head + "[boundary.a]\nspring = -1\n",
        "case.toml:4:10: boundary.a.spring: ", "must not be negative, found the integer -1", "0 or more"},
       {"TractionOnFixed", head + "[boundary.a]\ndisplacement = [0, 'free']\ntraction = [1, 2]\n",
