@@ -248,10 +248,13 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
   const std::vector<double> load = dual.load(t);
   DualPair<dim> result{.z = systems_.solve(OnContact::held, load, trace(number, natural), near)};
   if (!fits(number, natural, result.z)) reason = "a dual displacement does not fit at the contact boundary";
-  if (!(space.norm(load) > 0)) return result;
-  result.target = systems_.solve(OnContact::free, load, std::vector<double>(space.n_dofs(), 0.0), tight);
-  result.stress = dual.balanced(result.target, t, reason);
-  result.oscillation = dual.oscillation(result.target);
+  result.target.assign(space.n_dofs(), 0.0);
+  if (space.norm(load) > 0)
+  {
+    result.target = systems_.solve(OnContact::free, load, result.target, tight);
+    result.stress = dual.balanced(result.target, t, reason);
+  }
+  result.oscillation = dual.oscillation(result.target);  // also of loads whose moments vanish
   return result;
 }
 
