@@ -71,7 +71,6 @@ class FacetData
     int contact = -1;  ///< index in linearisation_ and regularisation_
   };
   [[nodiscard]] Moments& discretisation_of(Condition& condition);
-  /// g_N on a boundary facet.
   /// g_N on a boundary facet, and the springs there.
   void add_load(const contact::NitscheForm<dim>& form, std::size_t number,
                 std::span<const Point<dim>> springs);
