@@ -17,6 +17,7 @@
 #include "tribound/problem/normal_field.h"
 #include "tribound/problem/problem.h"
 #include "tribound/problem/quantity.h"
+#include "tribound/problem/spring.h"
 #include "tribound/problem/surface.h"
 #include "tribound/problem/units.h"
 #include "tribound/problem/water.h"

@@ -17,6 +17,7 @@
 #include "tribound/adapt/error_bars.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/friedrichs.h"
+#include "tribound/certify/energy/free_motions.h"
 #include "tribound/mesh/refine.h"
 #include "verification/effectivity.h"
 #include "verification/energy_effectivity.h"
@@ -169,18 +170,24 @@ TEST(Spring, NoBoundOrIntervalFails)
 }
 
 /// Springs with constant, linear and quadratic stiffness, one that jumps between facets, one that is no
-/// polynomial, and one that jumps inside a facet.
+/// polynomial, one that jumps inside a facet, and one whose denominator vanishes for all that a single
+/// enclosure on a facet knows.
 ProblemData<2> on_varying_springs(int which)
 {
-  const std::array<problem::Field, 6> stiffness = {2.0,
+  const std::array<problem::Field, 7> stiffness = {2.0,
                                                    formula("1 + x"),
                                                    formula("2 - y + 0.3*y^2"),
                                                    formula("x < 1 ? 1 : 3"),
                                                    formula("exp(x) + y"),
-                                                   formula("x < 0.77 ? 1 : 3")};
-  const std::array<problem::Field, 6> rest = {formula("0.1*y^2 - 0.05*y^3"), formula("0.1*x"),
-                                              formula("0.02*x*y"),           0.1,
-                                              formula("0.1*sin(3*x)"),       0.1};
+                                                   formula("x < 0.77 ? 1 : 3"),
+                                                   formula("1/(x^2 - 1.9*x + 1)")};
+  const std::array<problem::Field, 7> rest = {formula("0.1*y^2 - 0.05*y^3"),
+                                              formula("0.1*x"),
+                                              formula("0.02*x*y"),
+                                              0.1,
+                                              formula("0.1*sin(3*x)"),
+                                              0.1,
+                                              0.1};
   return {.boundaries = {spring<2>("bottom", stiffness[which], 1.0, {0.0, rest[which]}),
                          spring<2>("left", 0.7, stiffness[which], {rest[which], 0.0}),
                          loaded<2>("right", 0.05, 0.1), loaded<2>("top", 0.02, -0.1)}};
@@ -188,7 +195,7 @@ ProblemData<2> on_varying_springs(int which)
 
 TEST(Spring, VaryingStiffnessAndRestAreBounded)
 {
-  for (int which = 0; which < 6; ++which)
+  for (int which = 0; which < 7; ++which)
     for (const int p : {1, 2, 3})
     {
       SCOPED_TRACE(fmt::format("{}, p = {}", which, p));
@@ -209,6 +216,118 @@ TEST(Spring, VaryingStiffnessAndRestAreBounded)
       EXPECT_GE(of_energy, 1);
       EXPECT_LE(of_energy, 2);
     }
+}
+
+/// K (u_h) is of degree 3 on the only facet with a spring, and u_h and the loads are affine: with P_3 of
+/// Legendre in s = 2 x - 1 and a zero s_0 of c + P_3, u_y = a (s - s_0) + k a c y and K = k (c + P_3)/(s -
+/// s_0), which is quadratic and positive. All of the error comes from the part k a P_3 of the spring's force,
+/// and so does all of the width of intervals.
+TEST(Spring, OscillationOfItsForceIsInIntervals)
+{
+  const double s_0 = -1.05;
+  const double c = 1.3190625;
+  const double a = 0.1;
+  const problem::Field k =
+      formula(fmt::format("2.5*(2*x - 1)^2 + {0}*(2*x - 1) - 1.5 + {0}*{1}", 2.5 * s_0, s_0));
+  ProblemData<2> data{.boundaries = {spring<2>("bottom", k, 0.0), loaded<2>("top", a, a * c),
+                                     loaded<2>("left", 0.0, -a), loaded<2>("right", 0.0, a)},
+                      .material = lame(1, 0)};
+  data.boundaries[0].displacement[0] = 0.0;
+  mesh::MeshData<2> square = block<2>({1, 1});
+  for (Point<2>& x : square.vertices) x[0] /= 2;
+  const DiscreteProblem<2> problem(square, data, {.degree = 2, .newton = {.tolerance = 1e-13}});
+  const std::vector<double> u = problem.solve().u;
+  const std::vector<Point<2>> nodes = problem.space.node_points();
+  for (Index i = 0; i < problem.space.n_nodes(); ++i)
+    EXPECT_NEAR(u[2 * i + 1], a * (2 * nodes[i][0] - 1 - s_0) + a * c * nodes[i][1], 1e-12);
+  const std::vector<problem::Quantity<2>> asked = {
+      {.name = "work", .kind = problem::QuantityKind::load_work}};
+  const certify::EnergyBound bound = adapt::energy_bound<2>(problem.form, problem.method, u, asked);
+  ASSERT_EQ(bound.reason, "");
+  const DiscreteProblem<2> rich(std::move(mesh::refine_uniformly(problem.mesh, 3).mesh), data,
+                                {.degree = 4, .newton = {.tolerance = 1e-12}});
+  const std::vector<double> truth = rich.solve().u;
+  const double work = rich.space.dot(rich.form.load(), truth);
+  EXPECT_GT(std::abs(work - problem.space.dot(problem.form.load(), u)), 1e-6 * work);
+  expect_contains(bound.quantities[0], work, "", 1e-12);
+  // The dual problem is the problem itself. What its stress lacks counts with B_v; the true error, which is
+  // less than constants allow, would not tell if that were left out.
+  EXPECT_GE(bound.quantities[0].upper - bound.quantities[0].lower, 2 * bound.oscillation * bound.b_v);
+}
+
+/// Facets on springs that are inclined to a component that is fixed: K acts on the other, from where it is.
+TEST(Spring, ActsBesideAFixedComponentOnAnInclinedFacet)
+{
+  mesh::MeshData<2> mesh = renumbered(block<2>({4, 3}), 2);
+  for (Point<2>& x : mesh.vertices) x[1] += 0.25 * x[0] * (1 - x[1]);  // the bottom rises along x
+  ProblemData<2> data{.boundaries = {spring<2>("bottom", 2.0, 0.5), loaded<2>("top", 0.02, -0.1),
+                                     loaded<2>("right", 0.0, 0.05)}};
+  data.boundaries[0].displacement[0] = 0.01;
+  for (int p = 1; p <= 3; ++p)
+  {
+    const DiscreteProblem<2> c(mesh, data, {.degree = p, .newton = {.tolerance = 1e-12}});
+    const std::vector<double> u = c.solve().u;
+    const std::vector<problem::Quantity<2>> asked = {{.name = "force",
+                                                      .kind = problem::QuantityKind::spring_force,
+                                                      .boundary = "bottom",
+                                                      .direction = Point<2>::UnitY()}};
+    const certify::EnergyBound bound = adapt::energy_bound<2>(c.form, c.method, u, asked);
+    const double found = effectivity<2>(RicherReference<2>(c, {.refinements = 2, .degree = 4}), u, bound);
+    EXPECT_GE(found, 1) << p;
+    EXPECT_LE(found, 3) << p;
+    double down = 0;  // of the loads
+    for (const mesh::BoundaryFacet& facet : c.mesh.boundary())
+    {
+      const double measure = mesh::facet_geometry(c.mesh, facet.cell, facet.local).measure;
+      const std::string& name = c.mesh.boundary_names()[facet.tag];
+      down += name == "top" ? 0.1 * measure : name == "right" ? -0.05 * measure : 0;
+    }
+    EXPECT_TRUE(bound.quantities[0].exact);  // nothing else acts along y
+    EXPECT_NEAR(bound.quantities[0].lower, down, 1e-12);
+    EXPECT_NEAR(bound.quantities[0].value, down, 1e-10);
+  }
+}
+
+/// A spring across the motion does not share the load of an obstacle; one along it does, however soft.
+TEST(Spring, AcrossAMotionLeavesStaticsAlone)
+{
+  for (const double tangential : {0.0, 1e-6})
+  {
+    const DiscreteProblem<2> c(block<2>({4, 2}),
+                               {.boundaries = {spring<2>("left", 2.0, tangential), obstacle<2>("bottom", {}),
+                                               loaded<2>("top", 0.02, -0.1)}},
+                               {.degree = 2, .newton = {.tolerance = 1e-12}});
+    const std::vector<problem::Quantity<2>> asked = {{.name = "force",
+                                                      .kind = problem::QuantityKind::contact_force,
+                                                      .boundary = "bottom",
+                                                      .direction = Point<2>::UnitY()}};
+    const certify::EnergyBound bound = adapt::energy_bound<2>(c.form, c.method, c.solve().u, asked);
+    EXPECT_EQ(bound.quantities[0].exact, tangential == 0);
+    if (tangential > 0) continue;
+    EXPECT_NEAR(bound.quantities[0].lower, 0.2, 1e-12);
+  }
+}
+
+/// One that is 0 at all vertices holds a body; one that is negative between the points of the rule has no
+/// energy; and load steps share one matrix, so that none may name t.
+TEST(Spring, IsLookedAtBetweenVerticesAndPoints)
+{
+  const auto on = [](const char* stiffness)
+  {
+    return ProblemData<2>{
+        .boundaries = {spring<2>("bottom", formula(stiffness), 0.1), loaded<2>("top", 0.02, -0.1)}};
+  };
+  const DiscreteProblem<2> held(block<2>({2, 1}), on("sin(pi*x)^2"), {.degree = 2});
+  EXPECT_EQ(held.solve().status, solve::NewtonStatus::converged);
+  EXPECT_EQ(certify::FreeMotions<2>(held.problem, held.mesh).size(), 0);
+
+  const DiscreteProblem<2> negative(block<2>({1, 1}), on("(x - 0.365)^2 - 0.005"), {.degree = 2});
+  EXPECT_EQ(adapt::energy_bound<2>(negative.form, negative.method, negative.solve().u).reason,
+            "the stiffness of a spring is negative somewhere");
+  EXPECT_THROW(DiscreteProblem<2>(block<2>({2, 1}), on("2 - t"), {.degree = 2}), InputError);
+  mesh::MeshData<2> rounded = block<2>({2, 1});
+  for (Point<2>& x : rounded.vertices) x[1] -= 1e-17;
+  EXPECT_NO_THROW(DiscreteProblem<2>(rounded, on("1e7*y"), {.degree = 2}));
 }
 
 /// C_F of a body that only springs hold: no function may beat it.

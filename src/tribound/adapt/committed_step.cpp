@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tribound/adapt/load_path.h"
-#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::adapt
 {
@@ -15,9 +14,7 @@ std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<c
                               std::span<const double> contact_load)
 {
   std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
-  std::vector<double> of_springs(u.size(), 0.0);
-  contact::Springs<dim>(form.problem(), form.space()).add_forces(u, of_springs);
-  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= of_springs[i] + contact_load[i];
+  for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
   return forces;
 }
 

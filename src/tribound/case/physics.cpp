@@ -146,15 +146,6 @@ void read_slider(const TableReader& table, BoundaryConfig& boundary)
   boundary.geometry = read_slider_geometry(table);
 }
 
-/// Load steps share one stiffness matrix.
-void refuse_time(const problem::Field& stiffness)
-{
-  if (stiffness.uses_time())
-    throw InputError(stiffness.where(),
-                     "contains the load factor t, but the stiffness of a spring does not change",
-                     "a stiffness without t; the place of rest may move, such as rest = [0, \"-0.01*t\"]");
-}
-
 /// One stiffness, or those along and across the normal and where the spring rests.
 void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
 {
@@ -164,7 +155,7 @@ void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
   if (!node.is_table())
   {
     of_boundary.read("spring", spring.normal);
-    refuse_time(spring.normal);
+    problem::refuse_time(spring.normal);
     spring.tangential = spring.normal;
     return;
   }
@@ -172,8 +163,8 @@ void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
   table.read("normal", spring.normal);
   table.read("tangential", spring.tangential);
   table.read("rest", spring.rest);
-  refuse_time(spring.normal);
-  refuse_time(spring.tangential);
+  problem::refuse_time(spring.normal);
+  problem::refuse_time(spring.tangential);
   if (!table.has("normal") && !table.has("tangential"))
     throw InputError(node.where, "has no stiffness",
                      "normal = 1e7, tangential = 1e6, or spring = 1e7 for both");

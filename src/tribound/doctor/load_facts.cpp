@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 
 namespace tribound::doctor
@@ -119,13 +118,17 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   return measure;
 }
 
-/// The largest range of a component that is prescribed or of springs at rest. A fixed obstacle counts as 0,
-/// and springs, which let the body go, too.
+/// The largest range of a component that is prescribed, on boundaries or where springs rest on their free
+/// components. It includes 0 with contact, since obstacles are fixed, and with springs: where they rest is
+/// where they pull the body to from there.
 template <int dim>
-double displacement_range(const contact::NitscheForm<dim>& form, const contact::Springs<dim>& springs)
+double displacement_range(const contact::NitscheForm<dim>& form)
 {
   const fem::Constraints& constraints = form.constraints();
-  const bool has_zero = form.problem().has_contact() || !springs.facets().empty();
+  const std::span<const contact::SpringFacet<dim>> springs = form.springs().facets();
+  const auto fixes = [&](const contact::SpringFacet<dim>& facet, int component)
+  { return form.problem().boundary(form.space().mesh().boundary()[facet.number].tag).fixes(component); };
+  const bool has_zero = form.problem().has_contact() || !springs.empty();
   const double start = has_zero ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   double range = 0;
   for (int component = 0; component < dim; ++component)
@@ -138,12 +141,15 @@ double displacement_range(const contact::NitscheForm<dim>& form, const contact::
       lowest = std::fmin(lowest, constraints.values[i]);  // fmin ignores NaN
       highest = std::fmax(highest, constraints.values[i]);
     }
-    for (const contact::SpringFacet<dim>& facet : springs.facets())
+    for (const contact::SpringFacet<dim>& facet : springs)
+    {
+      if (fixes(facet, component)) continue;
       for (const Point<dim>& rest : facet.rest.values)
       {
         lowest = std::fmin(lowest, rest[component]);
         highest = std::fmax(highest, rest[component]);
       }
+    }
     range = std::fmax(range, highest - lowest);
   }
   return range;
@@ -152,13 +158,15 @@ double displacement_range(const contact::NitscheForm<dim>& form, const contact::
 template <int dim>
 using Condition = problem::BoundaryCondition<dim>;
 
-/// How far a force moves what the springs hold; 0 without springs.
+/// How far a force moves what the springs hold along it; 0 without springs.
 template <int dim>
-double shift_on(const contact::Springs<dim>& springs, double force)
+double shift_on(const contact::Springs<dim>& springs, const Point<dim>& force)
 {
-  double stiffness = 0;
-  for (const contact::SpringFacet<dim>& facet : springs.facets()) stiffness += facet.most * facet.measure;
-  return stiffness > 0 ? force / stiffness : 0;
+  double stiffness = 0;  // (K e, e)_S times |force|^2, e along the force
+  for (const contact::SpringFacet<dim>& facet : springs.facets())
+    for (std::size_t q = 0; q < facet.weights.size(); ++q)
+      stiffness += facet.weights[q] * force.dot(facet.stiffness.values[q] * force);
+  return stiffness > 0 ? std::pow(force.norm(), 3) / stiffness : 0;
 }
 
 }  // namespace
@@ -195,11 +203,10 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   const double support = supporting_measure(problem, mesh);
   if (support > 0) facts.support_stress = resultant.norm() / support;
   facts.body_stress = facts.largest_body_force * facts.size;
-  const contact::Springs<dim> springs(problem, form.space());
-  facts.has_springs = !springs.facets().empty();
-  facts.displacement_strain = displacement_range(form, springs) / facts.size;
+  facts.has_springs = problem.has_springs();
+  facts.displacement_strain = displacement_range(form) / facts.size;
   if (!problem.has_contact() && std::ranges::none_of(problem.boundaries(), &Condition<dim>::fixes_any))
-    facts.spring_shift = shift_on(springs, resultant.norm()) / facts.size;
+    facts.spring_shift = shift_on(form.springs(), resultant) / facts.size;
   for (const contact::ContactPoint<dim>& point : form.contact_points())
     facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);
   facts.suction = find_suction(form);

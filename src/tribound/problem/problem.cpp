@@ -108,44 +108,46 @@ int group_number(const std::string& name, std::span<const std::string> groups, c
 }
 
 template <int dim>
-Tensor<dim> Spring<dim>::stiffness(const Point<dim>& x, const Point<dim>& n) const
-{
-  const auto at_x = [&](const Field& field)
-  {
-    const double k = field(x);
-    if (!(k >= 0))
-      throw InputError(field.where(),
-                       fmt::format("the stiffness of the spring is {} at {}", k, fmt::join(x, ", ")),
-                       "numbers >= 0, stress per length");
-    return k;
-  };
-  return spring_matrix<dim>(at_x(normal), at_x(tangential), n);
-}
-
-template <int dim>
 bool BoundaryCondition<dim>::fixes_any() const
 {
   return std::ranges::any_of(displacement, [](const auto& component) { return component.has_value(); });
 }
 
 template <int dim>
-Tensor<dim> BoundaryCondition<dim>::held(const Point<dim>& x, const Point<dim>& n) const
+Tensor<dim> BoundaryCondition<dim>::on_free(Tensor<dim> stiffness) const
 {
-  Tensor<dim> result = Tensor<dim>::Zero();
-  if (spring)
-  {
-    const Tensor<dim> across = Tensor<dim>::Identity() - n * n.transpose();
-    if (spring->normal(x) > 0) result += n * n.transpose();
-    if (spring->tangential(x) > 0) result += across;
-  }
   for (int a = 0; a < dim; ++a)
     if (fixes(a))
     {
-      result.row(a).setZero();
-      result.col(a).setZero();
-      result(a, a) = 1;
+      stiffness.row(a).setZero();
+      stiffness.col(a).setZero();
     }
+  return stiffness;
+}
+
+template <int dim>
+Tensor<dim> BoundaryCondition<dim>::fixed() const
+{
+  Tensor<dim> result = Tensor<dim>::Zero();
+  for (int a = 0; a < dim; ++a)
+    if (fixes(a)) result(a, a) = 1;
   return result;
+}
+
+template <int dim>
+Tensor<dim> BoundaryCondition<dim>::held(const Point<dim>& x, const Point<dim>& n) const
+{
+  if (!spring) return fixed();
+  const auto acts = [&](const Field& k) { return k(x) > 0 ? 1.0 : 0.0; };
+  return fixed() + on_free(spring_matrix<dim>(acts(spring->normal), acts(spring->tangential), n));
+}
+
+template <int dim>
+Tensor<dim> BoundaryCondition<dim>::acting(const Point<dim>& n) const
+{
+  if (!spring) return fixed();
+  const auto may_act = [](const Field& k) { return k.is_zero() ? 0.0 : 1.0; };
+  return fixed() + on_free(spring_matrix<dim>(may_act(spring->normal), may_act(spring->tangential), n));
 }
 
 template <int dim>
@@ -214,6 +216,10 @@ Problem<dim>::Problem(std::span<const std::string> region_names, std::span<const
       pairs_(std::move(pairs)),
       sides_(sides_of<dim>(boundary_names, boundaries, pairs_))
 {
+  for (const BoundaryCondition<dim>& boundary : boundaries_)
+    if (boundary.spring)
+      for (const Field* stiffness : {&boundary.spring->normal, &boundary.spring->tangential})
+        refuse_time(*stiffness);
 }
 
 template <int dim>
@@ -266,12 +272,28 @@ int Problem<dim>::load_degree() const
   {
     for (const Field& g : boundary.traction) degree = std::max(degree, g.degree());
     if (boundary.pressure) degree = std::max(degree, boundary.pressure->degree());
+  }
+  return degree;
+}
+
+template <int dim>
+int Problem<dim>::spring_load_degree() const
+{
+  int degree = 0;
+  for (const BoundaryCondition<dim>& boundary : boundaries_)
+  {
     if (!boundary.spring) continue;
     const int of_stiffness = std::max(boundary.spring->normal.degree(), boundary.spring->tangential.degree());
     for (const Field& rest : boundary.spring->rest)
       if (!rest.is_zero()) degree = std::max(degree, of_stiffness + rest.degree());
   }
   return degree;
+}
+
+template <int dim>
+bool Problem<dim>::has_springs() const
+{
+  return std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.spring.has_value(); });
 }
 
 template <int dim>
@@ -370,8 +392,6 @@ bool Problem<dim>::has_contact() const
          std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.contact.has_value(); });
 }
 
-template struct Spring<2>;
-template struct Spring<3>;
 template struct BoundaryCondition<2>;
 template struct BoundaryCondition<3>;
 template BoundaryCondition<2> with_displacement<2>(const std::string&, std::array<std::optional<Field>, 2>);

@@ -17,6 +17,7 @@
 #include "tribound/problem/field.h"
 #include "tribound/problem/material.h"
 #include "tribound/problem/normal_field.h"
+#include "tribound/problem/spring.h"
 #include "tribound/problem/water.h"
 
 namespace tribound::problem
@@ -82,26 +83,6 @@ struct PairSide
   bool is_slave = false;
 };
 
-/// k_n n n^T + k_t (I - n n^T).
-template <int dim>
-[[nodiscard]] Tensor<dim> spring_matrix(double k_n, double k_t, const Point<dim>& n)
-{
-  return k_t * Tensor<dim>::Identity() + (k_n - k_t) * n * n.transpose();
-}
-
-/// An elastic support or foundation: sigma n = g_N - K (u - u_0) with K = k_n n n^T + k_t (I - n n^T), n the
-/// normal of the facet.
-template <int dim>
-struct Spring
-{
-  Field normal;                      ///< k_n >= 0, stress per length
-  Field tangential;                  ///< k_t >= 0
-  std::array<Field, dim> rest = {};  ///< u_0
-
-  /// K at x. Throws InputError for a negative stiffness, naming the place.
-  [[nodiscard]] Tensor<dim> stiffness(const Point<dim>& x, const Point<dim>& n) const;
-};
-
 /// The conditions on one named part of the boundary.
 template <int dim>
 struct BoundaryCondition
@@ -120,9 +101,15 @@ struct BoundaryCondition
   [[nodiscard]] bool holds_any() const { return fixes_any() || spring.has_value(); }
   /// Whether the norm of the residual has the trace here: on obstacles and springs.
   [[nodiscard]] bool is_in_norm() const { return contact.has_value() || spring.has_value(); }
+  /// K without the components that are fixed.
+  [[nodiscard]] Tensor<dim> on_free(Tensor<dim> stiffness) const;
   /// A matrix M such that motions with M z = 0 are free at x: the components that are fixed, or where a
   /// spring is.
   [[nodiscard]] Tensor<dim> held(const Point<dim>& x, const Point<dim>& n) const;
+  /// The same wherever the spring may act on a facet: nothing here does work in motions with M z = 0.
+  [[nodiscard]] Tensor<dim> acting(const Point<dim>& n) const;
+  /// The diagonal matrix with 1 for components that are fixed.
+  [[nodiscard]] Tensor<dim> fixed() const;
   /// Whether g_N can be non-zero.
   [[nodiscard]] bool is_loaded() const;
   /// g_N at x with outward unit normal n; components that are fixed are 0.
@@ -191,8 +178,11 @@ class Problem
   [[nodiscard]] Point<dim> body_force(int region, const Point<dim>& x) const;
   /// Whether f is the same everywhere in the region.
   [[nodiscard]] bool body_force_is_constant(int region) const;
-  /// The largest degree of the loads in regions and on boundaries, as Field::degree().
+  /// The largest degree of the loads in regions and on boundaries, as Field::degree(), without springs.
   [[nodiscard]] int load_degree() const;
+  /// That of K u_0.
+  [[nodiscard]] int spring_load_degree() const;
+  [[nodiscard]] bool has_springs() const;
   /// Whether f vanishes identically in the region.
   [[nodiscard]] bool body_force_is_zero(int region) const;
 

@@ -142,7 +142,8 @@ template <int dim>
 std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheForm<dim>& form,
                                                         const ExternalForces& forces, CondensedDofs dofs)
 {
-  algebra::SparseRows stiffness = contact::stiffness(form.problem(), form.space(), form.constraints());
+  algebra::SparseRows stiffness =
+      contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs());
   const std::vector<double> of_stiffness = diagonal(stiffness, form.space());
   return std::make_unique<CondensedEquilibrium<dim>>(form, std::move(stiffness), of_stiffness, forces,
                                                      std::move(dofs));

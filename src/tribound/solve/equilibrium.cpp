@@ -10,7 +10,7 @@
 
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
-#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/residual.h"
 
 namespace tribound::solve
 {
@@ -20,7 +20,7 @@ ExternalForces external_forces(const contact::NitscheForm<dim>& form)
 {
   const fem::Constraints& constraints = form.constraints();
   ExternalForces forces{{form.load().begin(), form.load().end()}};
-  std::vector<double> lifting = contact::apply_stiffness(form.problem(), form.space(), constraints.values);
+  std::vector<double> lifting = contact::internal_forces(form, constraints.values);
   for (std::size_t i = 0; i < lifting.size(); ++i)
     if (constraints.fixed[i]) lifting[i] = forces.load[i] = 0;
   forces.scale = form.space().norm(forces.load) + form.space().norm(lifting);

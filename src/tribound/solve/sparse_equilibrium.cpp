@@ -18,7 +18,7 @@ class SparseEquilibrium final : public Equilibrium<dim>
   SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
       : form_(&form),
-        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints()),
+        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs()),
                    form.space().numbers()),
         contact_(form.space().n_dofs(), dim, form.contact_pattern(), form.space().numbers()),
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),

@@ -120,12 +120,11 @@ std::vector<Resultant<dim>> integrate_springs(const contact::NitscheForm<dim>& f
                                               std::span<const double> u, const Point<dim>& about)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const contact::Springs<dim> springs(form.problem(), form.space());
   std::vector<Resultant<dim>> result(form.problem().boundaries().size());
-  for (const contact::SpringFacet<dim>& facet : springs.facets())
+  for (const contact::SpringFacet<dim>& facet : form.springs().facets())
     if (facet.number < mesh.n_owned_boundary())
       for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, form.facet_rule()))
-        result[mesh.boundary()[facet.number].tag].add(x - about, dx * springs.traction(facet, u, q));
+        result[mesh.boundary()[facet.number].tag].add(x - about, dx * form.springs().traction(facet, u, q));
   add_up<dim>(mesh.ranks(), result);
   return result;
 }

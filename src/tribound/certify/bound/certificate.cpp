@@ -8,7 +8,6 @@
 #include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/contact_geometry.h"
 #include "tribound/contact/nitsche/elasticity.h"
-#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -95,10 +94,12 @@ std::string describe_law(const problem::Problem<dim>& problem)
 }
 
 /// How data that are not polynomials were treated.
-std::string describe_data(const contact::DataEffort& effort, int degree)
+std::string describe_data(const contact::DataEffort& effort, int degree, bool has_springs)
 {
   std::string exact = fmt::format(
       "loads, gaps and thresholds that are polynomials of degree {} are integrated exactly", degree);
+  if (has_springs)
+    exact += fmt::format(", forces of springs where k has degree 2 and k u_0 degree {}", degree);
   if (effort.formulas == 0) return exact;
   const std::string cut =
       effort.subdivided == 0 ? std::string()
@@ -153,7 +154,8 @@ std::string describe_geometry(const ContactGeometryFacts& facts)
 template <int dim>
 std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRule rule)
 {
-  std::string text = describe_data(form.data().effort(), form.space().degree() + 2);
+  std::string text =
+      describe_data(form.data().effort(), form.space().degree() + 2, form.problem().has_springs());
   if (!form.problem().has_contact()) return text;
   return text +
          (rule == ContactRule::resolved
@@ -197,7 +199,7 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "H^1, "
       "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
       "facets F" +
-          std::string(contact::has_springs(form.problem()) ? " and those on springs" : "") +
+          std::string(form.problem().has_springs() ? " and those on springs" : "") +
           std::string(form.problem().pairs().empty()
                           ? "; no unknown constant"
                           : ", between bodies with the jump of v over the segments on which a facet of one "

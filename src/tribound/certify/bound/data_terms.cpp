@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tribound/certify/bound/constants.h"
+#include "tribound/contact/nitsche/residual.h"
 
 namespace tribound::certify
 {
@@ -11,8 +12,7 @@ namespace tribound::certify
 /// P the vertex opposite to F, gives (m, v)_F = |F|/|T| (m, v + (x - P) . grad v / d)_T. The first term is
 /// like that of a body force, the second at most |m| |F|/|T| h_T |T|^{1/2} / d ||grad v||_T.
 template <int dim>
-DataTerms data_terms(const contact::NitscheForm<dim>& form, const contact::Springs<dim>& springs,
-                     std::span<const double> u)
+DataTerms data_terms(const contact::NitscheForm<dim>& form, std::span<const double> u)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const contact::DiscreteData<dim>& data = form.data();
@@ -27,7 +27,7 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form, const contact::Sprin
   }
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
-    const auto [oscillation, mean] = contact::traction_remainder(data, springs, k, u);
+    const auto [oscillation, mean] = contact::traction_remainder(form, k, u);
     if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     const double h = mesh::cell_diameter(mesh, facet.cell);
@@ -44,9 +44,7 @@ DataTerms data_terms(const contact::NitscheForm<dim>& form, const contact::Sprin
   return terms;
 }
 
-template DataTerms data_terms(const contact::NitscheForm<2>&, const contact::Springs<2>&,
-                              std::span<const double>);
-template DataTerms data_terms(const contact::NitscheForm<3>&, const contact::Springs<3>&,
-                              std::span<const double>);
+template DataTerms data_terms(const contact::NitscheForm<2>&, std::span<const double>);
+template DataTerms data_terms(const contact::NitscheForm<3>&, std::span<const double>);
 
 }  // namespace tribound::certify

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -25,7 +24,6 @@ struct DataTerms
 
 /// Upper bounds if the data are not polynomials: contact/nitsche/discrete_data.h, springs.h.
 template <int dim>
-[[nodiscard]] DataTerms data_terms(const contact::NitscheForm<dim>& form,
-                                   const contact::Springs<dim>& springs, std::span<const double> u);
+[[nodiscard]] DataTerms data_terms(const contact::NitscheForm<dim>& form, std::span<const double> u);
 
 }  // namespace tribound::certify

@@ -49,7 +49,6 @@ template <int dim>
 Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rule,
                           const std::optional<FriedrichsConstant>& known)
     : form_(form),
-      springs_(form.problem(), form.space()),
       friedrichs_(known ? *known : friedrichs_constant(form.problem(), form.space().mesh())),
       algebraic_(form),
       contact_(form, rule),
@@ -72,7 +71,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
   Estimate result;
   const mesh::Mesh<dim>& mesh = form_.space().mesh();
   result.cells.resize(mesh.n_owned_cells());
-  const DataTerms data = data_terms<dim>(form_, springs_, u);
+  const DataTerms data = data_terms<dim>(form_, u);
   for (std::size_t c = 0; c < result.cells.size(); ++c)
   {
     result.cells[c].osc = data.osc[c];

@@ -92,7 +92,6 @@ class Estimator
   void contact_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
 
   const contact::NitscheForm<dim>& form_;
-  contact::Springs<dim> springs_;
   FriedrichsConstant friedrichs_;
   AlgebraicResidual<dim> algebraic_;
   ContactTerms<dim> contact_;

@@ -237,7 +237,7 @@ template <int dim>
 double korn_constant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
   constexpr int resolved = 3;  // p + 2 for p = 1: rules integrate loads of such degrees
-  if (problem.load_degree() <= resolved) return 0;
+  if (std::max(problem.load_degree(), problem.spring_load_degree()) <= resolved) return 0;
   return mesh.partition() ? std::numeric_limits<double>::infinity()
                           : BodyConstants<dim>(problem, mesh).largest();
 }

@@ -36,6 +36,7 @@ struct ContactResultant
   RigidMotion<dim> motion{};
 
   [[nodiscard]] bool has(int boundary) const { return tag < 0 || boundary == tag; }
+  /// Whether the force of this boundary's spring is part of the resultant.
   [[nodiscard]] bool has_spring(const problem::Problem<dim>& problem, int boundary) const
   {
     return boundary == tag && problem.boundary(boundary).spring;

@@ -6,6 +6,7 @@
 #include "tribound/base/error.h"
 #include "tribound/base/rank_failure.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/solve/equilibrium.h"
 
 namespace tribound::certify
@@ -37,7 +38,8 @@ void ContactSystems<dim>::condense()
   try
   {
     const std::vector<double> no_load(form_.space().n_dofs(), 0.0);
-    algebra::SparseRows k = contact::stiffness(form_.problem(), form_.space(), form_.constraints());
+    algebra::SparseRows k =
+        contact::stiffness(form_.problem(), form_.space(), form_.constraints(), &form_.springs());
     diagonal_ = solve::diagonal(k, form_.space());
     condensed_ = std::make_unique<algebra::Condensation>(
         dim, std::move(k), std::vector<Index>{}, std::move(dofs.trace), no_load, form_.space().numbers());
@@ -99,7 +101,7 @@ std::optional<std::vector<double>> ContactSystems<dim>::solve_condensed(OnContac
   double scale = 0;
   for (int attempt = 0;; ++attempt)
   {
-    std::vector<double> r = contact::apply_stiffness(form_.problem(), space, u);
+    std::vector<double> r = contact::internal_forces<dim>(form_, u);
     if (attempt == 0) scale = space.norm(b) + space.norm(r);
     if (how == OnContact::springs)
       for (std::size_t e = 0; e < springs_.rows.size(); ++e)

@@ -42,7 +42,6 @@ class DualProblem
  private:
   problem::Problem<dim> problem_;
   contact::NitscheForm<dim> form_;
-  contact::Springs<dim> springs_;
   std::unique_ptr<Equilibrator<dim>> equilibrator_;
 };
 

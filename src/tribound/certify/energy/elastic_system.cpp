@@ -38,12 +38,12 @@ void add_springs(algebra::SparseRows& rows, const fem::LagrangeSpace<dim>& space
 
 template <int dim>
 algebra::SparseMatrix matrix_of(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                const std::vector<char>& fixed,
+                                const contact::Springs<dim>& elastic, const std::vector<char>& fixed,
                                 const std::optional<algebra::SparseMatrix>& springs,
                                 std::span<const Index> supports)
 {
   const fem::Constraints constraints{.fixed = fixed, .values = std::vector<double>(fixed.size(), 0.0)};
-  algebra::SparseRows rows = contact::stiffness(problem, space, constraints);
+  algebra::SparseRows rows = contact::stiffness(problem, space, constraints, &elastic);
   add_springs<dim>(rows, space, supports);
   algebra::SparseMatrix stiffness(dim, std::move(rows), space.numbers());
   return springs ? algebra::SparseMatrix::sum(stiffness, *springs) : std::move(stiffness);
@@ -55,12 +55,12 @@ template <int dim>
 ElasticSystem<dim>::ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                   std::vector<char> fixed, const algebra::SolverOptions& solver,
                                   algebra::Triplets springs, std::span<const Index> supports)
-    : problem_(problem), space_(space), fixed_(std::move(fixed))
+    : problem_(problem), space_(space), elastic_(problem, space), fixed_(std::move(fixed))
 {
   std::optional<algebra::SparseMatrix> added;
   if (space.mesh().ranks().any(!springs.rows.empty()))
     added.emplace(space.n_dofs(), dim, std::move(springs), space.numbers());
-  algebra::SparseMatrix matrix = matrix_of(problem, space, fixed_, added, supports);
+  algebra::SparseMatrix matrix = matrix_of(problem, space, elastic_, fixed_, added, supports);
   factors_ = std::make_unique<Factors>(
       Factors{std::move(added), std::move(matrix),
               algebra::LinearSolver(solver, space, algebra::MatrixKind::positive_definite)});
@@ -74,6 +74,7 @@ std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::sp
                                               double tolerance) const
 {
   std::vector<double> internal = contact::apply_stiffness(problem_, space_, start);
+  elastic_.add_forces(start, internal);
   if (factors_->springs)
   {
     const std::vector<double> of_springs = factors_->springs->multiply(start);

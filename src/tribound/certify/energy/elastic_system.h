@@ -9,14 +9,16 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/triplets.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::certify
 {
 
-/// a(u, w) + s(u, w) = b(w) for all w of the space that vanish at fixed degrees of freedom; s are springs on
-/// the boundary. Keeps references and factors. All ranks construct and call it together.
+/// a(u, w) + (K u, w)_S + s(u, w) = b(w) for all w of the space that vanish at fixed degrees of freedom; s
+/// are further springs on the boundary. Keeps references and factors. All ranks construct and call it
+/// together.
 template <int dim>
 class ElasticSystem
 {
@@ -40,6 +42,7 @@ class ElasticSystem
 
   const problem::Problem<dim>& problem_;
   const fem::LagrangeSpace<dim>& space_;
+  contact::Springs<dim> elastic_;  ///< K
   std::vector<char> fixed_;
   std::unique_ptr<Factors> factors_;
 };

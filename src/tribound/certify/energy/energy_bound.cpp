@@ -73,7 +73,6 @@ struct EnergyEstimator<dim>::Parts
         facets(form),
         gaps(form, facets),
         motions(form.problem(), form.space().mesh()),
-        springs(form.problem(), form.space()),
         terms(form, ContactRule::reference),
         korn(of_body)
   {
@@ -96,7 +95,6 @@ struct EnergyEstimator<dim>::Parts
   ObstacleFacets<dim> facets;
   ContactGap<dim> gaps;
   FreeMotions<dim> motions;
-  contact::Springs<dim> springs;
   ContactTerms<dim> terms;
   double korn;
 };
@@ -113,8 +111,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!korn) korn = korn_constant(form.problem(), form.space().mesh());
   parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
-  if (!parts_->springs.has_polynomial_stiffness())
-    reason_ = "the stiffness of a spring is no polynomial of degree 2";
+  if (std::string why = parts_->form.springs().why_unclear(); !why.empty()) reason_ = std::move(why);
   if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
@@ -137,16 +134,20 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
                                   [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
   std::vector<double> apart(v.begin(), v.end());  // of the springs at v and at u~
   for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= balanced[i];
-  parts.springs.add_products(apart, apart, cells.square);
+  std::vector<double> of_springs(cells.square.size(), 0.0);
+  form.springs().add_products(apart, apart, of_springs);
   EnergyBound result;
-  result.cells = cells.square;
-  std::array<double, 7> sums{};  // ||tau - sigma(v)||^2, A^2, ||O||^2, of transfer, ||c||^2, dist^2, G_c
-  auto& [square, a_square, o_square, e_square, c_square, dist_square, g] = sums;
+  result.cells.resize(cells.square.size());
+  // ||tau - sigma(v)||^2, A^2, ||O||^2, of transfer, ||c||^2, dist^2, G_c, of springs
+  std::array<double, 8> sums{};
+  auto& [square, a_square, o_square, e_square, c_square, dist_square, g, s_square] = sums;
   for (std::size_t k = 0; k < cells.square.size(); ++k)
   {
     const double o = loads.cells[k] + transfer[k];
-    square += cells.square[k];
-    result.cells[k] = std::pow(std::sqrt(cells.square[k]) + o, 2);
+    const double distance = cells.square[k] + of_springs[k];
+    square += distance;
+    s_square += of_springs[k];
+    result.cells[k] = std::pow(std::sqrt(distance) + o, 2);
     a_square += result.cells[k];
     o_square += o * o;
     e_square += transfer[k] * transfer[k];
@@ -165,6 +166,7 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
   if (!(result.cell_balance <= cell_balance_limit)) result.reason = "a cell does not balance";
   const double a = std::sqrt(a_square) + loads.missed;
   result.contact = g;
+  result.springs = s_square;
   result.oscillation = std::sqrt(o_square) + loads.missed;
   result.transfer = std::sqrt(e_square);
   result.correction = std::sqrt(c_square);
@@ -223,7 +225,7 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};
   const std::vector<double> transfer = transfer_oscillation<dim>(form, parts_->terms, t_h.at_points);
-  const LoadOscillation loads = load_oscillation<dim>(form, parts_->springs, balanced, parts_->korn);
+  const LoadOscillation loads = load_oscillation<dim>(form, balanced, parts_->korn);
   if (!std::isfinite(loads.missed))
     return {.reason = "quadrature may miss a part of the loads, and contact or springs alone hold a body"};
   EnergyBound best{.reason = "no displacement near the computed one is admissible"};
@@ -242,8 +244,8 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
                                     { return problem::cone(segment.contact->law).coefficient > 0; })))
     best.target = EnergyTarget::computed_friction;
   if (best.reason.empty())
-    use(BoundedState<dim>(form, parts_->facets, parts_->springs, best.is_open ? *v.open : *v.closed, balanced,
-                          stress, t_h, best));
+    use(BoundedState<dim>(form, parts_->facets, best.is_open ? *v.open : *v.closed, balanced, stress, t_h,
+                          best));
   return best;
 }
 

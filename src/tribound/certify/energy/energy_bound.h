@@ -39,6 +39,7 @@ struct EnergyBound
   double gap = 0;                  ///< E, the duality gap of v and tau, plus ||O|| B_v
   double correction = 0;           ///< ||u_h - v||_en
   double contact = 0;              ///< G_c
+  double springs = 0;              ///< (K (u~ - v), u~ - v)_S, of which E has half
   double oscillation = 0;          ///< ||O||, the contribution of data that are not polynomials, and transfer
   double transfer = 0;             ///< of ||O||: what tractions lose between meshes that do not match
   double cell_balance = 0;         ///< largest part of the data of a cell that it cannot balance

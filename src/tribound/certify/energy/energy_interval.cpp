@@ -39,24 +39,6 @@ bool is_homogeneous(const contact::NitscheForm<dim>& form, const ObstacleFacets<
   return result && !form.space().mesh().ranks().any(differs);
 }
 
-namespace
-{
-
-/// (K (u~ - v), u~ - v)_S.
-template <int dim>
-double of_springs(const BoundedState<dim>& state)
-{
-  std::vector<double> apart(state.v.begin(), state.v.end());
-  for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= state.balanced[i];
-  std::vector<double> products(state.form.space().mesh().n_owned_cells(), 0.0);
-  state.springs.add_products(apart, apart, products);
-  double sum = 0;
-  for (const double product : products) sum += product;
-  return state.form.space().mesh().ranks().sum(sum);
-}
-
-}  // namespace
-
 template <int dim>
 void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInterval& interval)
 {
@@ -65,9 +47,8 @@ void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInt
   const Ranks& ranks = state.form.space().mesh().ranks();
   const DualProducts products = products_of_stresses<dim>(state, pair);
   const DualSums sums(products, ranks);
-  const double quarter =
-      bound.gap - bound.mid * bound.mid - of_springs(state) / 4;   // ||tau - sigma(v)||^2 / 4
-  const double of_mean = sums.square + 2 * sums.centre + quarter;  // ||(tau + sigma(v))/2||^2
+  const double quarter = bound.gap - bound.mid * bound.mid - bound.springs / 4;  // ||tau - sigma(v)||^2 / 4
+  const double of_mean = sums.square + 2 * sums.centre + quarter;                // ||(tau + sigma(v))/2||^2
   const double size = std::sqrt(std::max(0.0, of_mean));
   double lower = std::pow(std::max(0.0, size - bound.mid), 2);
   double upper = std::pow(size + bound.mid, 2);

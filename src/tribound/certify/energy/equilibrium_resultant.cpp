@@ -6,6 +6,7 @@
 #include "tribound/certify/energy/contact_resultant.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/bodies.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
 {
@@ -56,13 +57,16 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
   }
   bool by_conditions = false;
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
-    if (const auto& condition = form.problem().boundary(facet.tag);
-        condition.spring && !resultant.has_spring(form.problem(), facet.tag) && moves(facet))
-      by_conditions = true;
-    else if (condition.fixes_any() && moves(facet))
-      for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
-        for (int a = 0; a < dim; ++a)
-          by_conditions = by_conditions || (condition.fixes(a) && resultant.motion(mesh.vertex(v))[a] != 0);
+  {
+    const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
+    if (!condition.holds_any() || !moves(facet)) continue;
+    const Tensor<dim> acting =
+        resultant.has_spring(form.problem(), facet.tag)
+            ? condition.fixed()
+            : condition.acting(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+      by_conditions = by_conditions || !(acting * resultant.motion(mesh.vertex(v))).isZero(0);
+  }
   return mesh.ranks().any(by_contact || by_conditions);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tribound/base/dense_factors.h"
+#include "tribound/contact/support/holding_points.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -43,8 +44,8 @@ std::vector<contact::RigidModes<dim>> modes_of(const mesh::Mesh<dim>& mesh, cons
   return modes;
 }
 
-/// Per body the sum of r r^T over the rows r of the modes, for each component that a boundary fixes at a
-/// vertex.
+/// Per body the sum of r r^T over the rows r of the modes, for each component that a boundary holds at one of
+/// its holding_points().
 template <int dim>
 std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                 const mesh::Bodies& bodies, std::span<const contact::RigidModes<dim>> modes)
@@ -58,9 +59,8 @@ std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh
     const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     const int body = bodies.of_cell[facet.cell];
     Eigen::Map<Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(body) * n * n]);
-    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+    for (const Point<dim>& x : contact::holding_points(boundary, mesh, facet))
     {
-      const Point<dim>& x = mesh.vertex(v);
       const Eigen::Matrix<double, dim, n> motions = boundary.held(x, normal) * modes[body].at(x);
       gram += motions.transpose() * motions;
     }

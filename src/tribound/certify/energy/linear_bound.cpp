@@ -11,12 +11,11 @@ namespace tribound::certify
 
 template <int dim>
 BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const ObstacleFacets<dim>& on,
-                                const contact::Springs<dim>& elastic, std::span<const double> displacement,
-                                std::span<const double> of_stress, const Stress<dim>& equilibrated,
-                                const AdmissibleTraction<dim>& traction, const EnergyBound& energy)
+                                std::span<const double> displacement, std::span<const double> of_stress,
+                                const Stress<dim>& equilibrated, const AdmissibleTraction<dim>& traction,
+                                const EnergyBound& energy)
     : form(of),
       facets(on),
-      springs(elastic),
       v(displacement),
       balanced(of_stress),
       stress(equilibrated),
@@ -26,7 +25,8 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       junctions(on.junctions()),
       unresolved(0)
 {
-  if (form.problem().load_degree() > form.space().degree() + 2) unresolved = bound.oscillation;
+  if (form.problem().load_degree() > form.space().degree() + 2 || !form.springs().has_polynomial_rest())
+    unresolved = bound.oscillation;
   form.add_contact_load(t_h.at_points, forces);
 }
 
@@ -55,7 +55,7 @@ template <int dim>
 DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& pair)
 {
   DualProducts result = products_of_stresses(state, pair);
-  if (state.springs.facets().empty()) return result;
+  if (state.form.springs().facets().empty()) return result;
   const std::size_t n = pair.z.size();
   std::vector<double> mean(n, 0.0);   // of z and the target
   std::vector<double> apart(n, 0.0);  // target less z
@@ -67,10 +67,10 @@ DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& 
     apart[i] = target - pair.z[i];
     error[i] = state.balanced[i] - state.v[i];
   }
-  state.springs.add_products(mean, error, result.centre);
-  state.springs.add_products(apart, apart, result.square);
-  state.springs.add_products(state.balanced, pair.z, result.work);
-  state.springs.add_products(pair.z, pair.z, result.energy);
+  state.form.springs().add_products(mean, error, result.centre);
+  state.form.springs().add_products(apart, apart, result.square);
+  state.form.springs().add_products(state.balanced, pair.z, result.work);
+  state.form.springs().add_products(pair.z, pair.z, result.energy);
   return result;
 }
 

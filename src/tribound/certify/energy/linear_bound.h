@@ -20,7 +20,6 @@ struct BoundedState
 {
   const contact::NitscheForm<dim>& form;
   const ObstacleFacets<dim>& facets;
-  const contact::Springs<dim>& springs;
   std::span<const double> v;
   std::span<const double> balanced;  ///< u~, to which the springs with the equilibrated stress belong
   const Stress<dim>& stress;         ///< equilibrated; tau is made from it
@@ -32,8 +31,7 @@ struct BoundedState
   double unresolved;
 
   BoundedState(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,
-               const contact::Springs<dim>& springs, std::span<const double> v,
-               std::span<const double> balanced, const Stress<dim>& stress,
+               std::span<const double> v, std::span<const double> balanced, const Stress<dim>& stress,
                const AdmissibleTraction<dim>& t_h, const EnergyBound& bound);
 
   /// L(z) + (t_h, z)_C - (tau, eps(z)): the effect of data that are not polynomials, and rounding.

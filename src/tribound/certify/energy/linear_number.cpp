@@ -14,7 +14,7 @@ double LinearNumber<dim>::base(const BoundedState<dim>& state, const QuantityPar
   if (parts.quantity.kind == problem::QuantityKind::load_work)
     return contact::load_work<dim>(state.form, state.v);
   if (parts.quantity.kind == problem::QuantityKind::spring_force)
-    return state.springs.force(parts.tag, state.v).dot(parts.direction);
+    return state.form.springs().force(parts.tag, state.v).dot(parts.direction);
   return mean_displacement<dim>(state.form, parts, state.v);
 }
 

@@ -8,6 +8,7 @@
 
 #include "tribound/certify/bound/poincare_korn.h"
 #include "tribound/certify/bound/transfer_terms.h"
+#include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/polynomials.h"
 
 namespace tribound::certify
@@ -37,8 +38,8 @@ double stiffness_of(const contact::NitscheForm<dim>& form, Index cell)
 /// at most n + 1 times their root mean square on simplices with n + 1 vertices. That on F is tested with w
 /// less the nearest rigid motion r on T, and with r.
 template <int dim>
-LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, const contact::Springs<dim>& springs,
-                                 std::span<const double> u, double korn)
+LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                 double korn)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const contact::DiscreteData<dim>& data = form.data();
@@ -53,7 +54,7 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, const co
   }
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
-    const auto [oscillation, mean] = contact::traction_remainder(data, springs, k, u);
+    const auto [oscillation, mean] = contact::traction_remainder(form, k, u);
     if (oscillation == 0 && mean == 0) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     const PoincareKorn<dim> of_cell = constants_of(mesh, facet.cell);
@@ -139,10 +140,8 @@ std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
   return result;
 }
 
-template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, const contact::Springs<2>&,
-                                          std::span<const double>, double);
-template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, const contact::Springs<3>&,
-                                          std::span<const double>, double);
+template LoadOscillation load_oscillation(const contact::NitscheForm<2>&, std::span<const double>, double);
+template LoadOscillation load_oscillation(const contact::NitscheForm<3>&, std::span<const double>, double);
 
 template std::vector<double> transfer_oscillation(const contact::NitscheForm<2>&, const ContactTerms<2>&,
                                                   std::span<const Point<2>>);

@@ -9,7 +9,6 @@
 
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/nitsche/springs.h"
 
 namespace tribound::certify
 {
@@ -25,7 +24,6 @@ struct LoadOscillation
 /// `korn` is K of certify/bound/korn.h. All ranks together.
 template <int dim>
 [[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form,
-                                               const contact::Springs<dim>& springs,
                                                std::span<const double> u, double korn);
 
 /// |(t, [w])_C - (Pi_F t, w)_S + (Pi_G t, w)_M| <= sum_T e_T ||w||_en,T: e_T of the own cells, for t at the

@@ -127,9 +127,7 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
     case QuantityKind::mean_displacement:
       return mean_displacement<dim>(form_, item.parts, u);
     case QuantityKind::spring_force:
-      return contact::Springs<dim>(form_.problem(), form_.space())
-          .force(item.parts.tag, u)
-          .dot(item.parts.direction);
+      return form_.springs().force(item.parts.tag, u).dot(item.parts.direction);
     case QuantityKind::contact_force:
     case QuantityKind::contact_moment:
       return of_contact(0);
@@ -217,7 +215,7 @@ QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumb
   if (number.known) return known_interval(*number.known);
   const bool is_work = item.kind() == QuantityKind::load_work;
   if (is_work && state.unresolved > 0) return {.reason = "the loads are no polynomials of low degree"};
-  if (item.kind() == QuantityKind::spring_force && !state.springs.has_polynomial_rest())
+  if (item.kind() == QuantityKind::spring_force && !state.form.springs().has_polynomial_rest())
     return {.reason = "where the spring rests is no polynomial of low degree"};
   const LinearInterval of_number = intervals(number, number.base(state, item.parts));
   if (!of_number.reason.empty()) return {.reason = of_number.reason};

@@ -74,7 +74,7 @@ FacetData<dim, p>::FacetData(const contact::NitscheForm<dim>& form, std::span<co
                                          : 1)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const contact::Springs<dim> springs(form.problem(), form.space());
+  const contact::Springs<dim>& springs = form.springs();
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];

@@ -40,7 +40,7 @@ struct Stress
   std::vector<int> lin_block;  ///< per cell: number of its block in lin and reg, or -1 where both vanish
   std::vector<double> lin;     ///< the cells with a vertex on Gamma_C
   std::vector<double> reg;     ///< the same cells; empty unless T was regularised
-  /// What the parts carry on Gamma_C up to projection, at the contact points.
+  /// What the parts carry up to projection on Gamma_C, at the contact points, and on springs.
   struct Tractions
   {
     std::vector<Point<dim>> dis;        ///< T(u^k)

@@ -59,7 +59,8 @@ DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace
     : form_(form),
       n_refinements_(richer.refinements),
       refined_(mesh::refine_uniformly(form.space().mesh(), richer.refinements)),
-      space_(refined_.mesh, richer.degree)
+      space_(refined_.mesh, richer.degree),
+      springs_(form.problem(), space_)
 {
   assert(richer.degree >= form.space().degree());
   segments_ = refined_segments<dim>(form.space().mesh(), form.segments(), refined_);
@@ -218,9 +219,12 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
 {
   constexpr double share = 1e-5;  // of the effect of the data: well below any bound
   if (load_.empty())
+  {
     load_ = contact::assemble_load(
         contact::DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(), {}, {.share = share}),
         space_);
+    springs_.add_rest(load_);
+  }
   return residual(u, load_);
 }
 
@@ -228,8 +232,9 @@ template <int dim>
 std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span<const double> load) const
 {
   std::vector<double> r(load.begin(), load.end());
-  const std::vector<double> internal = contact::apply_stiffness<dim>(
-      form_.problem(), space_, fem::nested_interpolant<dim>(form_.space(), u, refined_, space_));
+  const std::vector<double> fine = fem::nested_interpolant<dim>(form_.space(), u, refined_, space_);
+  std::vector<double> internal = contact::apply_stiffness<dim>(form_.problem(), space_, fine);
+  springs_.add_forces(fine, internal);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal[i];
   add_contact_load(u, r);
   return r;

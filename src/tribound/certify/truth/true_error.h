@@ -63,7 +63,7 @@ class DualNorm
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return space_; }
   /// <R(u), phi_i> for every degree of freedom of W.
   [[nodiscard]] std::vector<double> residual(std::span<const double> u);
-  /// The same with the given values for L(phi_i).
+  /// The same with the given values for L(phi_i) + (K u_0, phi_i)_S.
   [[nodiscard]] std::vector<double> residual(std::span<const double> u, std::span<const double> load) const;
 
  private:
@@ -88,7 +88,8 @@ class DualNorm
   int n_refinements_;
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
-  std::vector<double> load_;  ///< L(phi_i); computed when first needed
+  contact::Springs<dim> springs_;
+  std::vector<double> load_;  ///< L(phi_i) + (K u_0, phi_i)_S; computed when first needed
   std::vector<RefinedSegment<dim>> segments_;
   std::vector<Operator> operators_;
 };

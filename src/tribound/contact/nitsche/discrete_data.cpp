@@ -110,19 +110,23 @@ auto DiscreteData<dim>::measures(Segments segments) const -> Measures
 template <int dim>
 void DiscreteData<dim>::count_formulas(Segments segments)
 {
-  const auto count = [&](const auto& datum, bool is_load)
+  const auto add = [&](bool is_load, bool is_enclosed)
   {
-    if (datum.degree() <= degree_ + 2) return;
     ++effort_.formulas;
     if (is_load) ++effort_.loads;
-    if (!datum.is_enclosed()) ++effort_.unenclosed;
+    if (!is_enclosed) ++effort_.unenclosed;
+  };
+  const auto count = [&](const auto& datum, bool is_load)
+  {
+    if (datum.degree() > degree_ + 2) add(is_load, datum.is_enclosed());
   };
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(problem_, mesh_, c), true);
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
   {
     count(traction_datum(problem_, mesh_, facet), true);
-    if (const auto& spring = problem_.boundary(facet.tag).spring) count(spring_datum(*spring), true);
+    const auto& spring = problem_.boundary(facet.tag).spring;
+    if (spring && !spring->is_polynomial(degree_ + 2)) add(true, spring->is_enclosed(degree_ + 2));
   }
   for (const ContactSegment<dim>& segment : segments)
   {

@@ -7,7 +7,6 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/discrete_data.h"
-#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
@@ -59,7 +58,6 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
       }
     }
   }
-  Springs<dim>(problem, space).add_forces(u, result);
   return result;
 }
 
@@ -100,9 +98,10 @@ double stress_that_matters(const problem::Problem<dim>& problem, const fem::Lagr
          std::sqrt(mesh.ranks().sum(volume));
 }
 
-/// (f, phi_i) + (g_N, phi_i)_N.
+}  // namespace
+
 template <int dim>
-std::vector<double> assemble_given_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
+std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   std::vector<double> load(space.n_dofs(), 0.0);
@@ -136,8 +135,6 @@ std::vector<double> assemble_given_load(const DiscreteData<dim>& data, const fem
 
   return load;
 }
-
-}  // namespace
 
 template <int dim>
 StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
@@ -175,7 +172,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const auto is_loaded = [&]
   {
     const std::vector<double> load =
-        assemble_given_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
+        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
     return mesh.ranks().any(std::ranges::any_of(load, [](double force) { return force != 0; }));
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&
@@ -207,14 +204,6 @@ std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fe
                  }
                });
   return energies;
-}
-
-template <int dim>
-std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space)
-{
-  std::vector<double> load = assemble_given_load(data, space);
-  Springs<dim>(data.problem(), space).add_rest(load);
-  return load;
 }
 
 template std::vector<double> apply_stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,

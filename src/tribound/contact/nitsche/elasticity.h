@@ -16,6 +16,8 @@ namespace tribound::contact
 
 template <int dim>
 class DiscreteData;
+template <int dim>
+class Springs;
 
 /// sigma = lambda tr(eps) I + 2 mu eps with eps = sym(grad u).
 template <int dim>
@@ -26,17 +28,17 @@ template <int dim>
   return s;
 }
 
-/// a(phi_j, phi_i) + (K phi_j, phi_i)_S over free i and j, with the springs of the problem. The row of a
-/// fixed degree of freedom i has only a(phi_i, phi_i) on the diagonal, which decouples it without spoiling
-/// the scaling. If its node has free components, the rest of the row is stored as zeros, so that nodes are
-/// coupled by whole blocks. On several ranks: the rows of the own nodes.
+/// a(phi_j, phi_i) over free i and j, and (K phi_j, phi_i)_S if springs are given. The row of a fixed degree
+/// of freedom i has only a(phi_i, phi_i) on the diagonal, which decouples it without spoiling the scaling. If
+/// its node has free components, the rest of the row is stored as zeros, so that nodes are coupled by whole
+/// blocks. On several ranks: the rows of the own nodes.
 template <int dim>
 [[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space,
-                                            const fem::Constraints& constraints);
+                                            const fem::Constraints& constraints,
+                                            const Springs<dim>* springs = nullptr);
 
-/// a(u, phi_i) + (K u, phi_i)_S for every degree of freedom, fixed ones included, cell by cell; incomplete at
-/// ghosts.
+/// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell; incomplete at ghosts.
 template <int dim>
 [[nodiscard]] std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
                                                   const fem::LagrangeSpace<dim>& space,
@@ -65,8 +67,8 @@ template <int dim>
                                                 const fem::LagrangeSpace<dim>& space,
                                                 std::span<const double> u);
 
-/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N + (K u_0, phi_i)_S for every degree of freedom, fixed ones
-/// included; incomplete at ghosts. The data are those for the degree of the space.
+/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; incomplete at
+/// ghosts. The data are those for the degree of the space.
 template <int dim>
 [[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
                                                 const fem::LagrangeSpace<dim>& space);

@@ -35,16 +35,6 @@ Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh
 }
 
 template <int dim>
-Datum<dim> spring_datum(const problem::Spring<dim>& spring)
-{
-  Datum<dim> datum;
-  for (const problem::Field* field : {&spring.normal, &spring.tangential})
-    datum.terms.push_back({field, Point<dim>::Zero()});
-  for (const problem::Field& field : spring.rest) datum.terms.push_back({&field, Point<dim>::Zero()});
-  return datum;
-}
-
-template <int dim>
 Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment)
 {
   Datum<dim, 3> datum;
@@ -62,8 +52,6 @@ template Datum<2> traction_datum(const problem::Problem<2>&, const mesh::Mesh<2>
                                  const mesh::BoundaryFacet&);
 template Datum<3> traction_datum(const problem::Problem<3>&, const mesh::Mesh<3>&,
                                  const mesh::BoundaryFacet&);
-template Datum<2> spring_datum(const problem::Spring<2>&);
-template Datum<3> spring_datum(const problem::Spring<3>&);
 template Datum<2, 3> contact_datum(const ContactSegment<2>&);
 template Datum<3, 3> contact_datum(const ContactSegment<3>&);
 

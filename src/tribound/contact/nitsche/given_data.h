@@ -21,10 +21,6 @@ template <int dim>
 [[nodiscard]] Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                         const mesh::BoundaryFacet& facet);
 
-/// K and u_0, for what their fields are: the directions mean nothing.
-template <int dim>
-[[nodiscard]] Datum<dim> spring_datum(const problem::Spring<dim>& spring);
-
 /// In direction 0 the stress gamma g, if g is given; in direction 1 s, in direction 2 p_w.
 template <int dim>
 [[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment);

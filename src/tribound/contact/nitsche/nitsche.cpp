@@ -35,6 +35,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       constraints_(fem::dirichlet(problem, space)),
       segments_(std::move(segments)),
       data_(problem, space.mesh(), space.degree(), segments_, accuracy),
+      springs_(problem, space),
       load_(assemble_load(data_, space)),
       n_owned_segments_(std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
                                               { return is_owned(space.mesh(), segment); })),
@@ -43,6 +44,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       nodes_(space.degree(), facet_rule().points),
       node_tables_(space.basis(), segments_, nodes_.nodes())
 {
+  springs_.add_rest(load_);
   look_for_bonds();
 }
 

@@ -14,6 +14,7 @@
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/segment_values.h"
+#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/geometry.h"
@@ -101,9 +102,10 @@ class NitscheForm
   [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
   [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }
+  [[nodiscard]] const Springs<dim>& springs() const { return springs_; }
   [[nodiscard]] const fem::Constraints& constraints() const { return constraints_; }
   [[nodiscard]] double gamma0() const { return gamma0_; }
-  /// L(phi_i) for every degree of freedom, fixed ones included.
+  /// L(phi_i) + (K u_0, phi_i)_S for every degree of freedom, fixed ones included.
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
@@ -217,6 +219,7 @@ class NitscheForm
   fem::Constraints constraints_;
   std::vector<ContactSegment<dim>> segments_;
   DiscreteData<dim> data_;
+  Springs<dim> springs_;
   std::vector<double> load_;
   std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;

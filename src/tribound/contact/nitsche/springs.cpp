@@ -1,129 +1,28 @@
 #include "tribound/contact/nitsche/springs.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "tribound/base/error.h"
-#include "tribound/contact/nitsche/simplex_map.h"
 #include "tribound/fem/polynomials.h"
-#include "tribound/fem/simplex_parts.h"
-#include "tribound/mesh/geometry.h"
-#include "tribound/problem/formula.h"
 
 namespace tribound::contact
 {
-
-namespace
-{
-
-/// K without the components that are fixed.
-template <int dim>
-Tensor<dim> on_free(Tensor<dim> stiffness, const problem::BoundaryCondition<dim>& boundary)
-{
-  for (int a = 0; a < dim; ++a)
-    if (boundary.fixes(a))
-    {
-      stiffness.row(a).setZero();
-      stiffness.col(a).setZero();
-    }
-  return stiffness;
-}
-
-/// Largest value and distances of a field on a facet, upper bounds; 0 where it is known only at points.
-struct FieldRange
-{
-  double most = 0;
-  double from_low = 0;   ///< from P^low
-  double from_high = 0;  ///< from P^{p+2}
-  bool is_low = true;    ///< in P^low
-};
-
-template <int dim>
-FieldRange range_of(const problem::Field& field, const SimplexMap<dim - 1, dim>& map, int low, int high)
-{
-  if (!field.is_enclosed()) return {.is_low = field.degree() <= low};
-  std::array<double, dim * dim> vertices;
-  for (int i = 0; i < dim; ++i)
-    std::ranges::copy(map(fem::reference_simplex<dim - 1>()[i]), vertices.begin() + i * dim);
-  std::array<problem::Enclosure, problem::Formula::max_order + 1> storage;
-  const auto taylor = std::span(storage).first(high + 2);
-  field.enclose(vertices, dim, taylor);
-  FieldRange result{.most = taylor[0].magnitude()};
-  if (field.degree() > low) result.from_low = problem::distance_from_polynomials(taylor, low + 1);
-  result.is_low = result.from_low == 0;
-  if (field.degree() > high) result.from_high = problem::distance_from_polynomials(taylor, high + 1);
-  if (!std::isfinite(result.most))
-    throw InputError(field.where(),
-                     fmt::format("may be unbounded near the point ({:.6g})", fmt::join(map.origin, ", ")),
-                     "bound it, such as 1/max(x, 1e-12) for 1/x");
-  return result;
-}
-
-}  // namespace
 
 template <int dim>
 Springs<dim>::Springs(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space)
     : space_(&space)
 {
-  if (!has_springs(problem)) return;
+  if (!problem.has_springs()) return;
   rule_ = fem::quadrature<dim - 1>(fem::data_quadrature_degree(space.degree()));
   table_ = fem::tabulate_on_facets<dim>(space.basis(), rule_.points);
-  const std::span<const mesh::BoundaryFacet> facets = space.mesh().boundary();
-  for (std::size_t number = 0; number < facets.size(); ++number)
-    if (const auto& boundary = problem.boundary(facets[number].tag); boundary.spring)
-      facets_.push_back(facet(boundary, number));
-}
-
-/// The rule is exact for products of K (u - u_0) with itself if K has degree <= 2 and K u_0 degree <= p + 2,
-/// and for its integrals against affine functions if both have degree <= p + 2.
-template <int dim>
-SpringFacet<dim> Springs<dim>::facet(const problem::BoundaryCondition<dim>& boundary,
-                                     std::size_t number) const
-{
-  constexpr int most_of_stiffness = 2;
-  const mesh::Mesh<dim>& mesh = space_->mesh();
-  const mesh::BoundaryFacet& on = mesh.boundary()[number];
-  const problem::Spring<dim>& spring = *boundary.spring;
-  const Point<dim> normal = mesh::facet_geometry(mesh, on.cell, on.local).normal;
-  const SimplexMap<dim - 1, dim> map = simplex_map(mesh, on);
-  const int p = space_->degree();
-  const int of_stiffness =
-      std::min(most_of_stiffness, std::max(spring.normal.degree(), spring.tangential.degree()));
-  const int of_rest = p + 2 - of_stiffness;
-  SpringFacet<dim> result{.number = number,
-                          .cell = on.cell,
-                          .local = on.local,
-                          .measure = map.measure,
-                          .is_resolved = of_stiffness == 0};
-  for (const problem::Field* field : {&spring.normal, &spring.tangential})
-  {
-    const FieldRange range = range_of<dim>(*field, map, most_of_stiffness, p + 2);
-    result.most = std::max(result.most, range.most);
-    result.stiffness.remainder = std::max(result.stiffness.remainder, range.from_low);
-    result.stiffness.mean_remainder = std::max(result.stiffness.mean_remainder, range.from_high);
-    result.stiffness.is_polynomial = result.stiffness.is_polynomial && range.is_low;
-  }
-  for (const problem::Field& field : spring.rest)
-  {
-    const FieldRange range = range_of<dim>(field, map, of_rest, p + 2);
-    result.rest.remainder = std::hypot(result.rest.remainder, range.from_low);
-    result.rest.mean_remainder = std::hypot(result.rest.mean_remainder, range.from_high);
-    result.rest.is_polynomial = result.rest.is_polynomial && range.is_low;
-    result.is_resolved = result.is_resolved && field.degree() <= p;
-  }
-  for (int q = 0; q < rule_.size(); ++q)
-  {
-    const Point<dim> x = map(rule_.points[q]);
-    result.weights.push_back(map.measure * rule_.weights[q] * mesh::factorial<dim - 1>);
-    result.stiffness.values.push_back(on_free(spring.stiffness(x, normal), boundary));
-    Point<dim>& rest = result.rest.values.emplace_back();
-    for (int a = 0; a < dim; ++a) rest[a] = spring.rest[a](x);
-  }
-  return result;
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  mesh.ranks().together(
+      [&]
+      {
+        for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
+          if (const auto& boundary = problem.boundary(mesh.boundary()[number].tag); boundary.spring)
+            facets_.push_back(spring_facet(boundary, mesh, number, space.degree(), rule_));
+      });
 }
 
 /// With polynomials K_h and u_0h, T = -K (u - u_0) and T_h = -K_h (u - u_0h),
@@ -168,10 +67,16 @@ double Springs<dim>::oscillation(const SpringFacet<dim>& facet, std::span<const 
 }
 
 template <int dim>
-bool Springs<dim>::has_polynomial_stiffness() const
+std::string Springs<dim>::why_unclear() const
 {
-  return !space_->mesh().ranks().any(
-      std::ranges::any_of(facets_, [](const auto& facet) { return !facet.stiffness.is_polynomial; }));
+  const Ranks& ranks = space_->mesh().ranks();
+  const auto on_any = [&](const auto& condition)
+  { return ranks.any(std::ranges::any_of(facets_, condition)); };
+  if (on_any([](const SpringFacet<dim>& facet) { return !facet.stiffness.is_polynomial; }))
+    return "the stiffness of a spring is no polynomial of degree 2";
+  if (on_any([](const SpringFacet<dim>& facet) { return !facet.is_nonnegative; }))
+    return "the stiffness of a spring is negative somewhere";
+  return {};
 }
 
 template <int dim>

@@ -3,12 +3,13 @@
 /// @file springs.h
 /// Elastic supports on the facets of a mesh: (K (u - u_0), v)_S, method section 15.
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/contact/nitsche/spring_facet.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
@@ -16,43 +17,13 @@
 namespace tribound::contact
 {
 
-/// A datum of springs at the points of a facet.
-template <class Value>
-struct SpringDatum
-{
-  std::vector<Value> values{};
-  double remainder = 0;       ///< >= what products of K (u - u_0) with itself see of its distance from P^m
-  double mean_remainder = 0;  ///< >= its distance from P^{p+2}
-  bool is_polynomial = true;  ///< of degree m
-};
-
-/// K and u_0 on a boundary facet, at the points of the rule exact to data_quadrature_degree(p). Components
-/// that Gamma_D fixes have no spring: K is restricted to the others.
-template <int dim>
-struct SpringFacet
-{
-  std::size_t number;  ///< in Mesh::boundary()
-  Index cell;
-  int local;
-  double measure;
-  double most = 0;   ///< >= |K|
-  bool is_resolved;  ///< K (u - u_0) is in P^p
-  std::vector<double> weights{};
-  SpringDatum<Tensor<dim>> stiffness{};  ///< m = 2
-  SpringDatum<Point<dim>> rest{};        ///< m = p + 2, less the degree of K
-};
-
-template <int dim>
-[[nodiscard]] bool has_springs(const problem::Problem<dim>& problem)
-{
-  return std::ranges::any_of(problem.boundaries(), [](const auto& b) { return b.spring.has_value(); });
-}
-
-/// The springs of a problem on a mesh, with ghosts. Keeps a reference to the space.
+/// The springs of a problem on a mesh, with ghosts. Keeps a reference to the space. All ranks construct it
+/// together.
 template <int dim>
 class Springs
 {
  public:
+  /// Throws InputError as spring_facet() does.
   Springs(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space);
 
   [[nodiscard]] std::span<const SpringFacet<dim>> facets() const { return facets_; }
@@ -68,8 +39,10 @@ class Springs
   }
   /// What is lost when -K (u - u_0) is replaced by its values at the points and projected on P^p.
   [[nodiscard]] LoadRemainder remainder(const SpringFacet<dim>& facet, std::span<const double> u) const;
-  /// Whether K, or u_0, is a polynomial of degree m on all facets of all ranks.
-  [[nodiscard]] bool has_polynomial_stiffness() const;
+  /// Why the energy of springs is not known between the points on some rank: K is no polynomial of degree 2,
+  /// or may be negative there. Empty: it is known.
+  [[nodiscard]] std::string why_unclear() const;
+  /// Whether u_0 is a polynomial of degree m on all facets of all ranks.
   [[nodiscard]] bool has_polynomial_rest() const;
   /// vector_i += (f, phi_i)_S, f(facet, q) at the points.
   template <class Force>
@@ -99,8 +72,6 @@ class Springs
     return table_.on_facet[facet.local].values_at(q);
   }
 
-  [[nodiscard]] SpringFacet<dim> facet(const problem::BoundaryCondition<dim>& boundary,
-                                       std::size_t number) const;
   [[nodiscard]] double oscillation(const SpringFacet<dim>& facet, std::span<const double> u) const;
 
   const fem::LagrangeSpace<dim>* space_;
@@ -108,17 +79,5 @@ class Springs
   fem::FacetTabulation<dim> table_;
   std::vector<SpringFacet<dim>> facets_;  ///< by number
 };
-
-/// What is lost of g_N and of the springs on a boundary facet.
-template <int dim>
-[[nodiscard]] LoadRemainder traction_remainder(const DiscreteData<dim>& data, const Springs<dim>& springs,
-                                               std::size_t number, std::span<const double> u)
-{
-  const LoadRemainder result = data.traction_remainder(number);
-  const SpringFacet<dim>* facet = springs.on(number);
-  if (facet == nullptr) return result;
-  const LoadRemainder of_spring = springs.remainder(*facet, u);
-  return {result.oscillation + of_spring.oscillation, result.mean + of_spring.mean};
-}
 
 }  // namespace tribound::contact

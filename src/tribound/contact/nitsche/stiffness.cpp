@@ -73,14 +73,15 @@ class BlockRow
 {
  public:
   BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-           const Springs<dim>& springs)
+           const Springs<dim>* springs)
       : problem_(&problem),
         space_(&space),
-        springs_(&springs),
+        springs_(springs),
         reference_(fem::gradient_products(space.basis())),
         index_(space.n_nodes(), -1)
   {
-    for (const SpringFacet<dim>& facet : springs.facets()) on_springs_[facet.cell].push_back(&facet);
+    if (springs == nullptr) return;
+    for (const SpringFacet<dim>& facet : springs->facets()) on_springs_[facet.cell].push_back(&facet);
   }
 
   void assemble(std::span<const LocalNode> cells)
@@ -119,7 +120,7 @@ class BlockRow
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
-  const Springs<dim>* springs_;
+  const Springs<dim>* springs_;                                                 ///< or null
   std::unordered_map<Index, std::vector<const SpringFacet<dim>*>> on_springs_;  ///< by cell
   std::vector<Tensor<dim>> reference_;
   std::vector<Index> index_;  ///< per node: its index among the neighbours, or -1
@@ -167,11 +168,10 @@ algebra::SparseRows stiffness_rows(BlockRow<dim> row, const fem::LagrangeSpace<d
 
 template <int dim>
 algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                              const fem::Constraints& constraints)
+                              const fem::Constraints& constraints, const Springs<dim>* springs)
 {
   constexpr Index worth_a_thread = 5000;
   const NodeCells cells = cells_around_nodes(space);
-  const Springs<dim> springs(problem, space);
   const Index n = space.n_owned_nodes();
   const int n_parts = std::clamp<int>(n / worth_a_thread, 1, max_threads());
   std::vector<algebra::SparseRows> parts(n_parts);
@@ -188,8 +188,8 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
 }
 
 template algebra::SparseRows stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                       const fem::Constraints&);
+                                       const fem::Constraints&, const Springs<2>*);
 template algebra::SparseRows stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                       const fem::Constraints&);
+                                       const fem::Constraints&, const Springs<3>*);
 
 }  // namespace tribound::contact

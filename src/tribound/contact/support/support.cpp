@@ -6,6 +6,8 @@
 #include <map>
 #include <variant>
 
+#include "tribound/contact/support/holding_points.h"
+
 namespace tribound::contact
 {
 
@@ -96,9 +98,8 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
       const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
       if (!condition.holds_any()) continue;
       const Point<dim> normal = mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
-      for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
+      for (const Point<dim>& x : holding_points(condition, mesh_, facet))
       {
-        const Point<dim>& x = mesh_.vertex(v);
         const Eigen::MatrixXd z = condition.held(x, normal) * assembly_.modes.at(x);
         grams.add({facet.tag, b}, assembly_.coefficients(b), z);
       }

@@ -141,6 +141,9 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
     add(fmt::format("spring {} along the normal, {} across",
                     problem::words(condition.spring->normal, per_length),
                     problem::words(condition.spring->tangential, per_length)));
+    if (std::ranges::any_of(condition.spring->rest,
+                            [](const problem::Field& rest) { return !rest.is_zero(); }))
+      add("at rest at " + vector([&](int i) { return problem::words(condition.spring->rest[i]); }) + length);
   }
   if (condition.contact)
     add("contact, " + problem::words(condition.contact->law, units) + ", gap " +

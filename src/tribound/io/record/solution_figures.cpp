@@ -12,7 +12,6 @@
 
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/elasticity.h"
-#include "tribound/contact/nitsche/springs.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
 
@@ -191,8 +190,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     figures.energy = level.norms.energy;
     figures.sigma_norm = level.norms.sigma;
   }
-  if (contact::has_springs(form.problem()))
-    figures.spring_energy = contact::Springs<dim>(form.problem(), form.space()).energy(level.u);
+  if (form.problem().has_springs()) figures.spring_energy = form.springs().energy(level.u);
   for (std::size_t node = 0; node < level.u.size(); node += dim)
     figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
   figures.max_displacement = form.space().mesh().ranks().max(figures.max_displacement);
