@@ -3,9 +3,7 @@
 /// @file vtu.h
 /// The solution on a mesh as VTU files with true degree-p cells (VTK Lagrange simplices).
 
-#include <array>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,9 +11,9 @@
 #include <vector>
 
 #include "tribound/base/types.h"
-#include "tribound/certify/equilibrate/stress.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/space.h"
+#include "tribound/io/fields/tensor_field.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::io
@@ -27,40 +25,6 @@ struct CellField
   std::string name;
   std::span<const double> values;
 };
-
-/// A tensor field that may be discontinuous between cells. `at_nodes(cell, values)` sets its values at the
-/// nodes of the cell, in the order of LagrangeSpace::basis(); its symmetric part is written.
-template <int dim>
-struct TensorField
-{
-  std::string name;
-  std::function<void(Index cell, std::span<Tensor<dim>> values)> at_nodes;
-};
-
-/// sigma(u_h) as a field. Keeps references to the arguments.
-template <int dim>
-[[nodiscard]] TensorField<dim> stress_field(const problem::Problem<dim>& problem,
-                                            const fem::LagrangeSpace<dim>& space, std::span<const double> u);
-
-/// sigma_h = sigma_dis + sigma_lin as a field. Keeps references to the arguments.
-template <int dim>
-[[nodiscard]] TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
-                                                         const certify::Stress<dim>& stress);
-
-/// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
-/// stress.
-[[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
-
-/// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
-/// in 2D.
-template <int dim>
-[[nodiscard]] std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio);
-
-/// Von Mises stress (3/2 dev sigma : dev sigma)^{1/2} of the symmetric tensor (xx, yy, zz, xy, yz, xz).
-[[nodiscard]] double von_mises(const std::array<double, 6>& sigma);
-
-/// Its eigenvalues, the largest first; tension positive.
-[[nodiscard]] std::array<double, 3> principal_stresses(const std::array<double, 6>& sigma);
 
 /// The position of a file in a series: of levels, or of load steps.
 struct SeriesPlace
