@@ -15,6 +15,7 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/adapt/transfer.h"
 #include "tribound/algebra/linear_solver.h"
+#include "tribound/case/probe_reader.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/interface_check.h"
@@ -226,6 +227,7 @@ void check(const case_file::Config& config, const mesh::Mesh<dim>& mesh, bool as
       config.history ? given.at(config.history->program.targets.front()) : given;
   (void)case_file::moment_point<dim>(config.output, mesh);  // throws for a wrong length
   (void)case_file::resolve_quantities<dim>(config, problem, mesh.boundary_names());
+  (void)case_file::observations<dim>(config, mesh);
   const fem::LagrangeSpace<dim> space(mesh, config.method.degree);
   contact::NitscheForm<dim> form(problem, space, config.method.gamma_0());
   if (auto history = contact::history_at_first(form)) form.set_history(std::move(history));

@@ -10,6 +10,7 @@
 #include "app/shared_file.h"
 #include "tribound/algebra/cholesky.h"
 #include "tribound/base/rank_failure.h"
+#include "tribound/case/probe_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/doctor/run_warnings.h"
 #include "tribound/doctor/solution_facts.h"
@@ -35,6 +36,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
       ranks_(first.mesh.ranks()),
       printed_(ranks_.is_first() ? printed : Printed::nothing),
       moment_about_(case_file::moment_point<dim>(config.output, first.mesh)),
+      observations_(case_file::observations<dim>(config, first.mesh)),
       slides_(std::move(slides)),
       in_work_(config.output)
 {

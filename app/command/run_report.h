@@ -19,6 +19,7 @@
 #include "tribound/adapt/replay.h"
 #include "tribound/base/clock.h"
 #include "tribound/case/config.h"
+#include "tribound/io/record/observations.h"
 #include "tribound/io/record/report.h"
 
 namespace tribound::app
@@ -152,6 +153,7 @@ class RunReport
   std::unique_ptr<io::OutputDirectory> directory_;
   io::RunRecord record_;  ///< with the levels, or the load steps of the current pass
   Point<dim> moment_about_;
+  io::Observations<dim> observations_;
   std::vector<bool> slides_;
   Pass in_work_;
   std::optional<std::pair<io::RunRecord, Pass>> before_;  ///< the last complete one, during another

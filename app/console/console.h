@@ -37,6 +37,8 @@ namespace tribound::app
 /// The balance of forces as a table, with the units of the case. Values below 1e-9 of the largest of their
 /// kind are shown as 0.
 [[nodiscard]] std::string balance_text(const certify::Balance& balance, const io::CaseFacts& facts);
+/// Sections and probes as tables; empty where there are none.
+[[nodiscard]] std::string observations_text(const io::LevelRecord& level, const io::CaseFacts& facts);
 /// A forecast from the decrease of the bound so far: "at this rate 1 % needs 1.2 million unknowns". The rate
 /// is fitted to the last half of the levels. Empty where the tolerance is reached, or fewer than three levels
 /// have a bound.

@@ -240,6 +240,7 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
       text += resultants_line("", "in all", last.figures.contact, force);
     for (const io::Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
     if (last.balance) text += balance_text(*last.balance, facts);
+    text += observations_text(last, facts);
     text +=
         line("max |u|", fmt::format("{:.8g}{}", last.figures.max_displacement, facts.behind(UnitOf::length)));
     text += line("energy", fmt::format("a(u, u) = {:.8g}{}, ||sigma|| = {:.8g}{}", last.figures.energy,

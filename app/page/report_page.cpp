@@ -12,6 +12,7 @@
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/error_bars.h"
+#include "tribound/io/record/observations_json.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
@@ -39,6 +40,11 @@ io::Json tables_json(const io::RunRecord& run, const std::string& contact)
   if (io::has_history(run)) tables["history.csv"] = table(io::history_csv(run));
   if (const std::string quantities = io::quantities_csv(io::levels_json(run), run.facts); !quantities.empty())
     tables["quantities.csv"] = table(quantities);
+  const io::Json solutions = io::has_history(run) ? io::steps_json(run) : io::levels_json(run);
+  if (const std::string probes = io::probes_csv(solutions); !probes.empty())
+    tables["probes.csv"] = table(probes);
+  if (const std::string sections = io::sections_csv(solutions); !sections.empty())
+    tables["sections.csv"] = table(sections);
   return tables;
 }
 
@@ -69,9 +75,9 @@ std::size_t n_triangles(std::span<const PageLevel> levels)
 /// The files of a run, in the order of interest to a reader.
 std::vector<std::string> run_files(const io::RunRecord& run)
 {
-  std::vector<std::string> names = {"certificate.json", run.case_file, "convergence.csv",
-                                    "quantities.csv",   "history.csv", "newton.csv",
-                                    "contact.csv",      "adapted.msh", "series.pvd"};
+  std::vector<std::string> names = {"certificate.json", run.case_file,  "convergence.csv", "quantities.csv",
+                                    "probes.csv",       "sections.csv", "history.csv",     "newton.csv",
+                                    "contact.csv",      "adapted.msh",  "series.pvd"};
   const std::string_view stem = io::has_history(run) ? "step" : "level";
   for (const io::LevelRecord& level : run.levels)
     for (const std::string& name :

@@ -13,6 +13,7 @@
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/level_json.h"
+#include "tribound/io/record/observations_json.h"
 #include "tribound/io/record/record_json.h"
 
 namespace tribound::app
@@ -98,6 +99,25 @@ void add_quantities(const io::Json& certificate, Figures& figures)
   }
 }
 
+/// N, V and M of sections.
+void add_sections(const io::Json& certificate, Figures& figures)
+{
+  for (const io::Json& section : certificate.value("sections", io::Json::array()))
+    for (const auto& [name, value] : io::section_numbers(section))
+      figures.emplace_back(fmt::format("section.{}.{}", text_at(section, "/name"), name), value);
+}
+
+/// Displacements of probes that are single points of one body.
+void add_probes(const io::Json& certificate, Figures& figures)
+{
+  constexpr std::array axes = {"x", "y", "z"};
+  for (const io::Json& probe : certificate.value("probes", io::Json::array()))
+    if (const io::Json& points = probe.at("points"); points.size() == 1)
+      for (std::size_t i = 0; i < points[0]["displacement"].size(); ++i)
+        figures.emplace_back(fmt::format("probe.{}.u_{}", text_at(probe, "/name"), axes[i]),
+                             points[0]["displacement"][i].get<double>());
+}
+
 /// The certificate of a run; null where there is none of this case.
 io::Json certificate_of(const std::filesystem::path& directory, const SweepRun& run)
 {
@@ -163,6 +183,8 @@ void read_results(const std::filesystem::path& directory, SweepRun& run)
     add_contact_line(directory / "contact.csv", run.figures);
     add_reactions(certificate, run.figures);
     add_quantities(certificate, run.figures);
+    add_sections(certificate, run.figures);
+    add_probes(certificate, run.figures);
   }
   double seconds = 0;
   const io::Json times = certificate.value("times", io::Json::object());

@@ -121,11 +121,13 @@
 
 // The results.
 #include "tribound/io/fields/contact_line.h"
+#include "tribound/io/fields/tensor_field.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/io/record/history_check.h"
 #include "tribound/io/record/level_record.h"
 #include "tribound/io/record/load_step_record.h"
+#include "tribound/io/record/observations.h"
 #include "tribound/io/record/report.h"
 #include "tribound/io/record/run_statements.h"
 #include "tribound/io/record/solution_figures.h"

@@ -104,7 +104,7 @@ def the_same_as_one(name, *arguments):
     for file in (f"level_{number:03}.pvtu", f"contact_{number:03}.vtu", "adapted.msh", "newton.csv"):
         expect(f"{name} {n}", (out(name, n) / file).is_file(), file)
     certificates = [json.loads((out(name, k) / "certificate.json").read_text()) for k in (1, n)]
-    for key in ("status", "reason", "warnings", "contact", "bodies", "balance", "mesh", "constants"):
+    for key in ("status", "reason", "warnings", "contact", "bodies", "balance", "probes", "sections", "mesh", "constants"):
         pair = [certificate.get(key) for certificate in certificates]
         # A moment that vanishes is rounding of forces times their arms.
         zero = max(1e-9, 1e-12 * largest(pair[0]) * largest(pair[0]["about"])) if key == "balance" else None
@@ -298,7 +298,10 @@ def faults():
 
 
 shutil.rmtree(DIRECTORY, ignore_errors=True)
-the_same_as_one("tresca", f"{EXAMPLES}/01_tresca_block/case.toml")
+# Through corners of cells, so that several ranks have a point, and along facets.
+LOOKED_AT = ["--set", "probe.line={ from = [0, 0], to = [2, 1], points = 9 }", "--set", "section.across={ point = [1, 0.5], normal = [1, 0.2] }", "--set",
+             "section.along={ point = [0, 0.5], normal = [0, 1] }"]
+the_same_as_one("tresca", f"{EXAMPLES}/01_tresca_block/case.toml", *LOOKED_AT)
 the_same_as_one("coulomb", f"{EXAMPLES}/02_coulomb_block/case.toml", "--set", "degree=3")
 the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
 the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=direct")

@@ -14,6 +14,7 @@
 #include "tribound/case/node.h"
 #include "tribound/case/parameters.h"
 #include "tribound/case/physics.h"
+#include "tribound/case/probe_reader.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/region_reader.h"
 #include "tribound/case/surface_reader.h"
@@ -158,6 +159,8 @@ Config read_document(const Node& document, std::string file)
   if (const Node* node = root.find("shape")) config.shapes = read_shapes(*node, case_directory);
   check_surfaces(config);
   if (const Node* node = root.find("quantity")) config.quantities = read_quantities(*node);
+  if (const Node* node = root.find("probe")) config.probes = read_probes(*node);
+  if (const Node* node = root.find("section")) config.sections = read_sections(*node);
   read_load_steps(root, config);
   config.output.directory = default_directory(config.file);
   read_method(root, config);
@@ -186,6 +189,8 @@ const Table& case_table()
                            {"obstacle", keys_of(obstacles_table())},
                            {"shape", keys_of(shapes_table())},
                            {"quantity", tables(quantity_table())},
+                           {"probe", keys_of(probes_table())},
+                           {"section", keys_of(sections_table())},
                            {"history", keys_of(history_table())}} +
           method_keys()};
   return table;

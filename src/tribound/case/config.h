@@ -92,6 +92,27 @@ struct QuantityConfig
   Where where;
 };
 
+/// One [probe.<name>] table: a point, or points along a line.
+struct ProbeConfig
+{
+  std::string name{};
+  std::vector<double> point{};  ///< empty for a line
+  std::vector<double> from{};
+  std::vector<double> to{};
+  int n_points = 1;
+  Where where;
+};
+
+/// One [section.<name>] table.
+struct SectionConfig
+{
+  std::string name{};
+  std::vector<double> point{};
+  std::vector<double> normal{};  ///< of any length but 0
+  std::optional<problem::Field> within{};
+  Where where;
+};
+
 /// `tribound study`.
 struct StudyConfig
 {
@@ -145,6 +166,8 @@ struct Config
   std::vector<SurfaceConfig> obstacles;
   std::vector<SurfaceConfig> shapes;
   std::vector<QuantityConfig> quantities;
+  std::vector<ProbeConfig> probes;
+  std::vector<SectionConfig> sections;
   std::optional<HistoryConfig> history;  ///< absent: one step without history, t = 1
   adapt::Method method;
   adapt::AdaptOptions adapt;

@@ -70,6 +70,42 @@ TEST(Console, CheckHasSizesWithUnits)
               AllOf(HasSubstr("16 cells, area 2 mm^2: E"), HasSubstr("4 facets, length 2 mm: contact")));
 }
 
+TEST(Console, SectionsAndProbes)
+{
+  io::LevelRecord level;
+  EXPECT_EQ(app::observations_text(level, facts), "");
+  level.sections = {{"base", 2, {1, -0.5}, {3}, {0, 1, -1, 0}, -0.5, {-1}, {3}, ""},
+                    {"top", 2, {1e-14, 0.25}, {0}, {0, 1, -1, 0}, 0.25, {-1e-14}, {0}, ""}};
+  EXPECT_EQ(app::observations_text(level, facts_with_units()),
+            "sections                       N             V             M\n"
+            "              base          -0.5            -1             3\n"
+            "              top           0.25             0             0\n"
+            "              forces in N/mm, moments in N mm/mm; on the part behind the plane,\n"
+            "              moments about its point; in equilibrium with the loads, without\n"
+            "              error bars\n");
+  level.sections[0].note = "moments need degree 2 or more";
+  EXPECT_THAT(
+      app::observations_text(level, facts),
+      HasSubstr("forces are\n              in equilibrium with the loads; moments need degree 2 or more\n"));
+  level.sections.clear();
+  const std::array<double, 6> stress = {3, 0, 0, 0, 0, 0};
+  level.probes = {{"crest", {{0, {1, 2}, "a", "a", {0.5, -0.25}, {}, stress, 0.125}}}, {"line", {}}};
+  for (std::size_t k = 0; k < 5; ++k)
+    level.probes[1].rows.push_back({k, {1, 2}, "a", "a", {0.5, -0.25 * k}, stress, stress, 0.125});
+  EXPECT_THAT(
+      app::observations_text(level, facts),
+      AllOf(
+          HasSubstr("probes                                u_x           u_y     von Mises    difference\n"
+                    "              crest                   0.5         -0.25             3         0.125\n"
+                    "              line, largest           0.5            -1             3         0.125\n"),
+          HasSubstr("without guarantee\n")));
+  level.probes = {
+      {"joint", {{0, {1, 2}, "a", "a", {0.5, 0}, stress}, {0, {1, 2}, "b", "b", {0.25, 0}, stress}}}};
+  EXPECT_THAT(app::observations_text(level, facts),
+              AllOf(HasSubstr("joint (1, 2), a           0.5"), HasSubstr("joint (1, 2), b          0.25"),
+                    HasSubstr("stresses are those of sigma(u_h)\n")));
+}
+
 TEST(Console, NewtonStep)
 {
   EXPECT_EQ(app::newton_text({3, 1.3e-5, 1.0, 0, false, 0.125}),

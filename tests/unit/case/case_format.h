@@ -49,14 +49,15 @@ inline std::vector<std::string> quoted(const std::string& text, const std::strin
 }
 
 /// The table that a section describes. "## [boundary.NAME]" is tried out on the boundary "top",
-/// "## [[contact]]" on the first contact, obstacles and shapes on one called "o".
+/// "## [[contact]]" on the first contact, obstacles, shapes, probes and sections on one called "o".
 inline std::string section_table(const std::string& heading)
 {
   const auto open = heading.find('[');
   if (open == std::string::npos) return {};
   if (heading.substr(open, 2) == "[[") return heading.substr(open + 2, heading.find(']') - open - 2) + ".0";
   const std::string table = heading.substr(open + 1, heading.find(']') - open - 1);
-  if (table == "obstacle.NAME" || table == "shape.NAME") return table.substr(0, table.find('.')) + ".o";
+  for (const char* named : {"obstacle.NAME", "shape.NAME", "probe.NAME", "section.NAME"})
+    if (table == named) return table.substr(0, table.find('.')) + ".o";
   return table == "boundary.NAME" ? "boundary.top" : table;
 }
 

@@ -42,6 +42,7 @@ std::string valid_case(const std::string& table)
   if (table == "obstacle.o.circle") text += "obstacle.o.circle = { centre = [0, 0], radius = 1 }\n";
   if (table == "obstacle.o.cylinder")
     text += "obstacle.o.cylinder = { centre = [0, 0, 0], axis = [0, 0, 1], radius = 1 }\n";
+  if (table == "section.o") text += "section.o = { point = [0, 0], normal = [0, 1] }\n";
   if (table == "contact.0") text += "contact = [{slave = 'a', master = 'b'}]\n";
   if (table == "quantity.0") text += "quantity = [{kind = 'mean_displacement', boundary = 'top'}]\n";
   return text;
@@ -65,6 +66,12 @@ std::vector<std::string> companions(const Row& row)
             "history.steps=[0,1]", "history.control=\"damage\""};
   if (row.name() == "quantity.0.point" || row.name() == "quantity.0.ramp")
     return {"quantity.0.kind=contact_moment"};
+  if (row.table == "probe.o" && row.key != "point")
+  {
+    std::vector<std::string> line = {"probe.o.from=[0, 0]", "probe.o.to=[1, 0]", "probe.o.points=5"};
+    std::erase_if(line, [&](const std::string& key) { return key.starts_with(row.name() + "="); });
+    return line;
+  }
   if (row.key == "goal_tolerance") return {"quantity=[{kind=\"energy\"}]", "adapt.goal=energy"};
   if (belongs_to_slider(row)) return {"boundary.top.slider=0"};
   if (row.name() == "boundary.top.spring.rest") return {"boundary.top.spring.normal=1"};
@@ -246,7 +253,8 @@ TEST(CaseFormat, KeysAreThoseOfTheProgram)
     documented[row.table].insert(row.key);
     if (row.table.find('.') == std::string::npos && !row.table.empty()) documented[""].insert(row.table);
   }
-  documented[""].insert({"boundary", "contact", "obstacle", "parameters", "quantity", "shape"});
+  documented[""].insert(
+      {"boundary", "contact", "obstacle", "parameters", "probe", "quantity", "section", "shape"});
   for (const auto& [table, keys] : documented) EXPECT_EQ(keys, allowed_keys(table)) << "[" << table << "]";
 }
 

@@ -60,7 +60,9 @@ std::string declared_name(const std::string& documented)
                                                            {"obstacle.o.plane", "obstacle.NAME.plane"},
                                                            {"obstacle.o.circle", "obstacle.NAME.circle"},
                                                            {"obstacle.o.cylinder", "obstacle.NAME.cylinder"},
-                                                           {"shape.o", "shape.NAME"}};
+                                                           {"shape.o", "shape.NAME"},
+                                                           {"probe.o", "probe.NAME"},
+                                                           {"section.o", "section.NAME"}};
   const auto found = names.find(documented);
   return found == names.end() ? documented : found->second;
 }

@@ -2,6 +2,7 @@
 
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/error_bars.h"
+#include "tribound/io/record/observations_json.h"
 
 namespace tribound::io
 {
@@ -144,6 +145,7 @@ void add_results(Json& object, const LevelRecord& level)
                                 {"cells", body.cells},
                                 {"energy", body.energy},
                                 {"bound", level.bound ? Json(body.bound) : Json(nullptr)}});
+  add_observations(object, level);
   object["contact"] = nullptr;
   if (level.figures.boundary_contact.empty()) return;
   Json contact = json(level.figures.contact);

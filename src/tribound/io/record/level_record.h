@@ -12,6 +12,8 @@
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/certificate.h"
 #include "tribound/io/record/load_step_record.h"
+#include "tribound/io/record/probes.h"
+#include "tribound/io/record/sections.h"
 #include "tribound/io/record/solution_figures.h"
 
 namespace tribound::io
@@ -67,7 +69,9 @@ struct LevelRecord
   LevelTimes times;
   /// Present for a load step, whose number is `level`, or for the worst one of a pass.
   std::optional<LoadStepRecord> load_step;
-  std::optional<int> load_step_number;  ///< of the worst step, where `level` is the number of a pass
+  std::optional<int> load_step_number;    ///< of the worst step, where `level` is the number of a pass
+  std::vector<ProbeRecord> probes{};      ///< where there is a solution
+  std::vector<SectionRecord> sections{};  ///< where there is a bound
 };
 
 /// The record of a level reported by the loop, with moments about the given point; `slides` and `units`: as

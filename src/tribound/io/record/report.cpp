@@ -9,6 +9,7 @@
 #include "tribound/io/file/json.h"
 #include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/level_json.h"
+#include "tribound/io/record/observations_json.h"
 #include "tribound/io/record/record_json.h"
 #include "tribound/io/record/tables.h"
 
@@ -187,6 +188,11 @@ void write_report(const std::filesystem::path& directory, const RunRecord& run)
   if (has_history(run)) write_file(directory / "history.csv", history_csv(run));
   if (const std::string quantities = quantities_csv(levels_json(run), run.facts); !quantities.empty())
     write_file(directory / "quantities.csv", quantities);
+  const Json solutions = has_history(run) ? steps_json(run) : levels_json(run);
+  if (const std::string probes = probes_csv(solutions); !probes.empty())
+    write_file(directory / "probes.csv", probes);
+  if (const std::string sections = sections_csv(solutions); !sections.empty())
+    write_file(directory / "sections.csv", sections);
   write_file(directory / "newton.csv", newton_csv(run));
   write_file(directory / "certificate.json", certificate_json(run));
 }

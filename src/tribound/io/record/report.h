@@ -99,8 +99,9 @@ void complete_pass(RunRecord& run, int pass, int worst_step);
 /// WriteError.
 void add_history_check(const std::filesystem::path& directory, const RunRecord& run);
 
-/// Writes the effective case, convergence.csv, history.csv where there are load steps, newton.csv and, last,
-/// certificate.json. Throws WriteError when a file cannot be written.
+/// Writes the effective case, convergence.csv, newton.csv, where there is something for them history.csv,
+/// quantities.csv, probes.csv and sections.csv, and, last, certificate.json. Throws WriteError when a file
+/// cannot be written.
 void write_report(const std::filesystem::path& directory, const RunRecord& run);
 
 }  // namespace tribound::io

@@ -105,13 +105,12 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
 }
 
 /// Numbers parts of the mesh with the same name.
-void number_alike(std::vector<BodyFigures>& bodies)
+void number_alike(std::vector<std::string>& names)
 {
-  std::map<std::string, std::vector<BodyFigures*>> of_name;
-  for (BodyFigures& body : bodies) of_name[body.name].push_back(&body);
+  std::map<std::string, std::vector<std::string*>> of_name;
+  for (std::string& name : names) of_name[name].push_back(&name);
   for (const auto& [name, alike] : of_name)
-    for (std::size_t i = 0; alike.size() > 1 && i < alike.size(); ++i)
-      alike[i]->name += fmt::format(" {}", i + 1);
+    for (std::size_t i = 0; alike.size() > 1 && i < alike.size(); ++i) *alike[i] += fmt::format(" {}", i + 1);
 }
 
 template <int dim>
@@ -123,7 +122,6 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
   const std::vector<double> energies = contact::cell_energies<dim>(form.problem(), form.space(), level.u);
   constexpr std::size_t width = 3;  // cells, energy, bound^2
   std::vector<double> sums(found.n * width, 0.0);
-  std::set<std::array<int, 2>> regions;  // of bodies
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     const int body = found.of_cell[c];
@@ -131,28 +129,37 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
     ++of_body[0];
     of_body[1] += energies[c];
     if (!level.estimate.cells.empty()) of_body[2] += std::pow(level.estimate.cells[c].total_sharp(), 2);
-    regions.insert({body, mesh.region(c)});
   }
-  const Ranks& ranks = mesh.ranks();
-  ranks.sum(std::span(sums));
-  std::vector<std::array<int, 2>> all(regions.begin(), regions.end());
-  all = ranks.gather<std::array<int, 2>>(all);
-  ranks.copy_from_first(all);
-  regions = {all.begin(), all.end()};
+  mesh.ranks().sum(std::span(sums));
+  const std::vector<std::string> names = body_names<dim>(mesh, found);
   std::vector<BodyFigures> bodies(found.n);
   for (std::size_t b = 0; b < bodies.size(); ++b)
   {
+    bodies[b].name = names[b];
     bodies[b].cells = static_cast<decltype(bodies[b].cells)>(sums[b * width]);
     bodies[b].energy = sums[b * width + 1];
     bodies[b].bound = std::sqrt(sums[b * width + 2]);
   }
-  for (const auto& [body, region] : regions)
-    bodies[body].name += (bodies[body].name.empty() ? "" : "+") + mesh.region_names()[region];
-  number_alike(bodies);
   return bodies;
 }
 
 }  // namespace
+
+template <int dim>
+std::vector<std::string> body_names(const mesh::Mesh<dim>& mesh, const mesh::Bodies& bodies)
+{
+  std::set<std::array<int, 2>> regions;  // of bodies
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c) regions.insert({bodies.of_cell[c], mesh.region(c)});
+  std::vector<std::array<int, 2>> all(regions.begin(), regions.end());
+  all = mesh.ranks().template gather<std::array<int, 2>>(all);
+  mesh.ranks().copy_from_first(all);
+  regions = {all.begin(), all.end()};
+  std::vector<std::string> names(bodies.n);
+  for (const auto& [body, region] : regions)
+    names[body] += (names[body].empty() ? "" : "+") + mesh.region_names()[region];
+  number_alike(names);
+  return names;
+}
 
 double known_digits(double value, double resolution)
 {
@@ -221,5 +228,8 @@ template SolutionFigures solution_figures(const contact::NitscheForm<2>&, const 
                                           const std::vector<bool>&, const problem::Units&);
 template SolutionFigures solution_figures(const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,
                                           const std::vector<bool>&, const problem::Units&);
+
+template std::vector<std::string> body_names(const mesh::Mesh<2>&, const mesh::Bodies&);
+template std::vector<std::string> body_names(const mesh::Mesh<3>&, const mesh::Bodies&);
 
 }  // namespace tribound::io

@@ -9,6 +9,7 @@
 
 #include "tribound/adapt/level.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/mesh/bodies.h"
 
 namespace tribound::io
 {
@@ -31,11 +32,16 @@ struct PairFigures
 /// One of several bodies: a part of the mesh connected through facets.
 struct BodyFigures
 {
-  std::string name;  ///< of its regions, joined by +, with a number where several bodies have the same
+  std::string name;  ///< body_names()
   long cells = 0;
   double energy = 0;  ///< its part of a(u, u)
   double bound = 0;   ///< its part of the bound: the squares add up
 };
+
+/// The name of every body: that of its regions, joined by +, with a number where several have the same. All
+/// ranks call it together.
+template <int dim>
+[[nodiscard]] std::vector<std::string> body_names(const mesh::Mesh<dim>& mesh, const mesh::Bodies& bodies);
 
 /// Resultants of the contact traction; forces (per unit depth in 2D).
 struct Resultants
