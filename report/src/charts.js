@@ -1,8 +1,9 @@
 // Common parts of the charts: drawing at the available width, on paper too; legends; curves on logarithmic axes.
 
 import * as Plot from "@observablehq/plot";
-import { count, element, logTicks, number, percent } from "./dom.js";
+import { count, element, logTicks, number, percent, powerOfTen } from "./dom.js";
 import { exportButtons } from "./export.js";
+import { headed, measured } from "./units.js";
 
 export const chartStyle = { fontSize: "12px", background: "none", overflow: "visible" };
 
@@ -47,6 +48,30 @@ function swatchLine({ colour, dash, strokeWidth }) {
 export function legend(items, kind = "") {
   return element("ul", { class: `legend ${kind}` }, items.map((item) => element("li", { title: item.title },
     item.line ? swatchLine(item) : element("span", { class: "swatch", style: `--colour:${item.colour}` }), item.name)));
+}
+
+export const lineColours = ["#3d7edb", "#d9822b", "#4fc38a", "#b0569e", "#8a94a0", "#c2453d", "#2b9aa6"];
+
+/**
+ * A figure of lines { name, values } over `x`. place(k): in words where point k is; row(k): its columns in the table that a reader saves;
+ * `groups`: of each point, lines are broken between them.
+ */
+export function lineChart({ title, name, xLabel, xUnit = "", x, yLabel, yUnit = "", lines, place, row, groups = [] }) {
+  const scaleX = powerOfTen(x);
+  const scaleY = powerOfTen(lines.flatMap(({ values }) => values));
+  const drawn = lines.map(({ name: line, values }, i) => ({ name: line, colour: lineColours[i], points: values.map((y, k) =>
+    ({ x: x[k] / scaleX.factor, y: y / scaleY.factor, k, name: line, group: groups[k] ?? "" })) }));
+  const tip = (d) => `${lines.length > 1 ? `${d.name}, ` : ""}${place(d.k)}\n${measured(number(d.y * scaleY.factor, 5), yUnit)}`;
+  const chart = responsive(title, (width) => Plot.plot({
+    width, height: Math.max(240, 0.6 * width), marginLeft: 62, marginRight: 18, marginTop: 28, marginBottom: 44, style: chartStyle,
+    x: { label: headed(xLabel, xUnit, scaleX), grid: true, ticks: 6 }, y: { label: headed(yLabel, yUnit, scaleY), grid: true, ticks: 6, zero: true },
+    marks: [Plot.ruleY([0], { strokeOpacity: 0.5 }), ...drawn.flatMap(({ points, colour }) => [
+      Plot.line(points, { x: "x", y: "y", z: "group", stroke: colour, strokeWidth: 2 }), Plot.dot(points, { x: "x", y: "y", fill: colour, r: 2.5 })]),
+    Plot.tip(drawn.flatMap(({ points }) => points), Plot.pointer({ x: "x", y: "y", title: tip }))],
+  }), { share: 0.47, name, rows: () => drawn.flatMap(({ name: line, points }) => points.map((point) =>
+    ({ ...row(point.k), curve: line, x: point.x * scaleX.factor, value: point.y * scaleY.factor }))) });
+  return element("figure", {}, element("h3", {}, title), chart,
+    lines.length > 1 ? legend(drawn.map((line) => ({ ...line, line: true, strokeWidth: 2 }))) : null);
 }
 
 /** Least-squares slope of log y over log x. */

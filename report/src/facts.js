@@ -106,6 +106,7 @@ export function levelsSection({ certificate: run, machine }) {
 
 const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level", "history.csv": "a row per load step",
   "quantities.csv": "what the case wants to know, with error bars, level by level",
+  "probes.csv": "displacement and stress at points", "sections.csv": "forces and moments through planes",
   "newton.csv": "a row per Newton step", "contact.csv": "the contact boundary, point by point",
   "series.pvd": "all levels or load steps, for ParaView", "adapted.msh": "the last mesh, for Gmsh",
   "case.toml": "the case as it was solved", "case_effective.toml": "the case as it was solved",

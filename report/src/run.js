@@ -8,6 +8,7 @@ import { caseSection, filesSection, guaranteeSection, levelsSection } from "./fa
 import { fieldsSection } from "./fields.js";
 import { historySection } from "./history.js";
 import { newtonSection } from "./newton.js";
+import { observationsSection } from "./observations.js";
 import { quantitiesSection } from "./quantities.js";
 import { nameUnits } from "./units.js";
 import { header } from "./verdict.js";
@@ -22,7 +23,7 @@ export function runPage(data, trueErrors) {
   const fields = fieldsSection(data, components);
   const contact = contactSection(data);
   const { element: top, showContact } = header(data);
-  const sections = [fields.element, historySection(run), quantitiesSection(run), boundSection(run, components), convergenceSection(run, components), contact.element,
+  const sections = [fields.element, historySection(run), quantitiesSection(run), observationsSection(run), boundSection(run, components), convergenceSection(run, components), contact.element,
     newtonSection(run, data.newton, components),
     guaranteeSection(run), caseSection(data), levelsSection(data),
     filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data)].filter(Boolean);

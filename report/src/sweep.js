@@ -19,6 +19,8 @@ const known = [
   [/^largest_pressure$/, "numbers", () => "Largest contact pressure", () => unit("stress")],
   [/^opened$/, "numbers", () => "Open part of the contact", () => unit("boundary")],
   [/^reaction_([xyz]\..*)$/, "numbers", (name) => `Reaction of ${name.slice(2)}, ${name[0]}`, () => unit("force")],
+  [/^section\.(.*)$/, "numbers", (name) => `Section ${name.replace(/\.([^.]*)$/, ", $1")}`, (name) => unit(/\.M[^.]*$/.test(name) ? "moment" : "force")],
+  [/^probe\.(.*)$/, "numbers", (name) => `Probe ${name.replace(/\.u_([xyz])$/, ", u $1")}`, () => unit("length")],
   [/^relative$/, "effort", () => "Bound of the error", () => "%"],
   [/^cells$/, "effort", () => "Cells", () => ""],
   [/^seconds$/, "effort", () => "Time", () => "s"],

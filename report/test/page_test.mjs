@@ -58,6 +58,13 @@ material = { E = 1000.0, nu = 0.3 }
 displacement = [0.0, -0.01, 0.004]
 [boundary.bottom]
 contact = { friction = "coulomb", coefficient = 0.3, gap = "0.02*(x - 0.5)^2" }
+[section.middle]
+point = [0.5, 0.5, 0.5]
+normal = [0, 1, 0]
+[probe.edge]
+from = [0, 1, 0]
+to = [1, 1, 1]
+points = 5
 [adapt]
 max_levels = 2
 ` },
@@ -80,6 +87,16 @@ slave = "upper.bottom"
 master = "lower.top"
 friction = "coulomb"
 coefficient = 0.5
+[probe."down & <across>"]
+from = [1.3, 1]
+to = [1.3, -1]
+points = 9
+[probe.corner]
+point = [2, 1]
+[section."the upper body"]
+point = [1, 0.5]
+normal = [1, 0]
+within = "y"
 [adapt]
 tolerance = 0.1
 ` },
@@ -137,6 +154,11 @@ interface = { law = "joint", tensile_strength = 0.05, fracture_energy = 0.003, c
 [history]
 steps = [0.5, 1, 1.5]
 watch = { top = "top.y" }
+[probe.crest]
+point = [2, 1]
+[section.across]
+point = [1, 0.5]
+normal = [1, 0]
 [adapt]
 max_levels = 0
 tolerance = 0.9
@@ -157,6 +179,11 @@ name = "grip"
 kind = "contact_force"
 boundary = "bottom"
 direction = [1, 0]
+[probe.corner]
+point = [2, 1]
+[section.across]
+point = [1, 0.5]
+normal = [1, 0]
 [adapt]
 tolerance = 0.3
 [output]
@@ -237,6 +264,30 @@ async function checkPairs(page, directory) {
   for (const [shown, [value]] of [[moment, pair.moment], [onMaster, pair.moment_on_master]])
     assert(Math.abs(shown - value) < 1e-5 * Math.abs(value) || Math.abs(shown - digits(value)) < 1e-4, `${shown} instead of ${value}`);
   assert.deepEqual(tables[3].map(([body]) => body), bodies.map((body) => body.name));
+}
+
+const cellsOf = (page, place) => page.locator(`${place} tbody tr`).evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
+
+/** Sections and probes between two bodies, with the point on the interface on both sides. */
+async function checkObservations(page, directory) {
+  const { probes, sections } = JSON.parse(readFileSync(`${directory}/certificate.json`, "utf8"));
+  const [[name, length]] = await cellsOf(page, "table.sections");
+  assert.deepEqual([name, length], ["the upper body", "1"]);
+  assert.equal(sections[0].V.length, 1);
+  const corner = await cellsOf(page, "table.probes");
+  assert.deepEqual(corner.map((row) => row.slice(0, 2)), [["corner", "upper"]]);
+  await checkCharts(page, ["#probes .chart >> nth=0", "#probes .chart >> nth=1"]);
+  assert.deepEqual(await page.locator("#probes h3").allTextContents(),
+    ["Sections", "Probes", "down & <across>: displacement", "down & <across>: stress"]);
+  assert.match(await hover(page, "#probes .chart"), /u x, \(1\.3, 1\), upper/);
+  const rows = (await saved(page, "#probes", "CSV")).toString().trim().split("\n");
+  assert.equal(rows[0], "point,region,curve,x,value");
+  const line = probes[0].points;
+  assert.equal(line.length, 10);
+  assert.equal(rows.length - 1, 2 * line.length);
+  assert.deepEqual(rows.slice(1, 11).map((row) => Number(row.split(",").at(-1))).map((x) => x.toPrecision(9)),
+    line.map((point) => point.displacement[0].toPrecision(9)));
+  assert.equal(readFileSync(`${directory}/probes.csv`, "utf8").split("\n")[0].split(",")[0], "level");
 }
 
 async function checkCharts(page, charts) {
@@ -378,6 +429,8 @@ async function checkSweep(browser) {
   const table = (await saved(page, "#quantities", "CSV")).toString().trim().split("\n").slice(1).map((line) => line.split(",").slice(-3).map(Number));
   assert.deepEqual(table.sort(), bars.sort());
   for (const [value, lower, upper] of bars) assert(lower < upper && lower <= value && value <= upper);
+  const titles = await page.locator("#numbers h3").allTextContents();
+  for (const shown of ["Section across, N", "Section across, M", "Probe corner, u y"]) assert(titles.includes(shown), titles.join(", "));
   const links = await checkLinks(page, directory);
   for (const link of ["sweep.csv", "sweep.json", "0001/report.html", "0006/report.html"]) assert(links.includes(link), `no link to ${link}`);
   await checkPrint(page, `${results}/sweep.pdf`);
@@ -401,6 +454,9 @@ async function checkJoint(browser) {
   await page.locator("#contact-step").selectOption("0");
   await page.waitForFunction((before) => document.querySelector("#contact .chart").innerHTML !== before, last);
   assert.deepEqual((await page.locator("#history h3").allTextContents()).filter((title) => title === "Watched"), ["Watched"]);
+  assert.deepEqual((await page.locator("#probes h3").allTextContents()).slice(2),
+    ["across: forces", "across: moments", "crest: displacement", "crest: stress"]);
+  assert.match(await hover(page, "#probes .chart"), /N, step 1, t = 0\.5.*MN/s);
   assert.deepEqual(complaints, []);
   report("joint", directory, seconds);
   await page.close();
@@ -425,6 +481,8 @@ try {
       const dimension = ["cube", "pair3d"].includes(name) ? 3 : 2;
       await (what.bodies ? useBodies : useFields)(page, dimension);
       if (what.bodies) await checkPairs(page, directory);
+      if (name === "pair") await checkObservations(page, directory);
+      if (name === "cube") assert.match(await page.locator("#probes").textContent(), /not symmetric on average.*edge: stress/s);
       if (dimension === 3) await usePlans(page);
       await checkNarrowAndDark(browser, url);
     }
