@@ -31,9 +31,10 @@ io::LevelRecord RunReport<dim>::record_of(const adapt::LevelView<dim>& view,
 {
   io::LevelRecord record = io::level_record<dim>(view, moment_about_, slides_, record_.facts.units);
   const contact::NitscheForm<dim>& form = view.discrete.form;
+  const bool has_stress = record.bound && view.level.stress.degree > 0;
   if (view.level.solved())
-    record.probes = io::read_probes<dim>(form, view.level, record.bound.has_value(), observations_.probes);
-  if (record.bound) record.sections = io::read_sections<dim>(form, view.level, observations_.sections);
+    record.probes = io::read_probes<dim>(form, view.level, has_stress, observations_.probes);
+  if (has_stress) record.sections = io::read_sections<dim>(form, view.level, observations_.sections);
   if (!step) return record;
   const std::optional<io::LoadStepRecord> before = io::last_load_step(record_);
   record.load_step = io::load_step_record<dim>(*step, before ? &*before : nullptr, config_.history->watch);
