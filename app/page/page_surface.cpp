@@ -106,7 +106,8 @@ class SurfaceSampler
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
-    surface_.stress.resize(stress_entries<dim>.size());
+    has_rest_ = dim == 2 && form.problem().has_initial_stress();
+    surface_.stress.resize(stress_entries<dim>.size() + (has_rest_ ? 1 : 0));
     at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
     values_.resize(at_nodes_.n_points);
     for (int local = 0; local < (dim == 2 ? 1 : dim + 1); ++local)
@@ -123,8 +124,11 @@ class SurfaceSampler
       if (vertex < 0) vertex = add_vertex(face.cell, node, map);
       surface_.faces.push_back(vertex);
       const std::array<double, 6> sigma = io::symmetric_part<dim>(values_[node], 0.0);
-      for (std::size_t i = 0; i < surface_.stress.size(); ++i)
+      for (std::size_t i = 0; i < stress_entries<dim>.size(); ++i)
         surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
+      if (has_rest_)
+        surface_.stress.back().push_back(io::out_of_plane_rest(
+            form_.problem(), space_.mesh().region(face.cell), map(space_.basis().node_point(node))));
     }
     surface_.cells.push_back(face.cell);
     surface_.bodies.push_back(body_of_[face.cell]);
@@ -149,6 +153,7 @@ class SurfaceSampler
   io::TensorField<dim> stress_;
   fem::Tabulation<dim> at_nodes_;    ///< the basis of u at these nodes
   std::vector<Tensor<dim>> values_;  ///< sigma_h at the nodes of a cell
+  bool has_rest_ = false;            ///< out_of_plane_rest() is not 0
   std::vector<std::vector<int>> lattices_;
   std::vector<int> body_of_;  ///< by cells
   std::vector<Index> vertex_of_node_;

@@ -59,8 +59,8 @@ struct Surface
   std::vector<Index> cells;          ///< per face: its cell
   std::vector<Index> bodies;         ///< per face: its body, numbered as in the certificate
   std::vector<Index> facets;         ///< 3D, per face: its number in Mesh::boundary()
-  /// sigma_h by component (xx, yy, xy; in 3D xx, yy, zz, xy, yz, xz): at every lattice point of every face,
-  /// where it may be discontinuous, or one value per face.
+  /// sigma_h by component (xx, yy, xy, with initial stress what it adds to zz; in 3D xx, yy, zz, xy, yz, xz):
+  /// at every lattice point of every face, where it may be discontinuous, or one value per face.
   std::vector<std::vector<double>> stress;
   double merged_below = 0.0;  ///< length below which details are merged; 0: none are
   SurfaceContact contact;     ///< 3D: on the first faces, which are those of Gamma_C

@@ -1,10 +1,10 @@
 // Stresses derived from the components of the equilibrated stress.
 
-/** The six components xx, yy, zz, xy, yz, xz at index i of the arrays; `ratio(i)`: zz / (xx + yy) in 2D. */
+/** The six components xx, yy, zz, xy, yz, xz at index i of the arrays; in 2D zz = `ratio(i)` (xx + yy), and what an initial stress adds. */
 function tensorAt(stress, ratio) {
   if (stress.length === 6) return (i) => stress.map((component) => component[i]);
-  const [xx, yy, xy] = stress;
-  return (i) => [xx[i], yy[i], ratio(i) * (xx[i] + yy[i]), xy[i], 0, 0];
+  const [xx, yy, xy, rest] = stress;
+  return (i) => [xx[i], yy[i], ratio(i) * (xx[i] + yy[i]) + (rest ? rest[i] : 0), xy[i], 0, 0];
 }
 
 function vonMises([xx, yy, zz, xy, yz, xz]) {

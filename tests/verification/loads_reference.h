@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,8 +19,9 @@
 namespace tribound::test
 {
 
-/// The energy with that of springs and both norms to 1e-8, the bound to 1e-6, for every degree and mesh of a
-/// case.
+/// The energy with that of springs and the norm of the stress to 1e-8, the bound to 1e-6, for every degree
+/// and mesh of a case. The program replaces an initial stress by its projection on P^p and leaves out the
+/// distance.
 inline void expect_reference(const std::string& name, const ProblemData<2>& data)
 {
   std::ifstream file(LOADS_REFERENCE);
@@ -36,15 +38,18 @@ inline void expect_reference(const std::string& name, const ProblemData<2>& data
       const double number = expected[key];
       EXPECT_NEAR(value, number, digits * number) << name << ", " << key << ", p = " << expected["p"];
     };
+    double rest = 0;  // ||sigma_0 - Pi^p sigma_0||^2
+    for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
+      rest += std::pow(c.form.data().initial_stress().remainder(cell).oscillation, 2);
     const contact::StressNorms norms = contact::stress_norms<2>(c.problem, c.space, solved.u);
     const double of_springs = contact::Springs<2>(c.problem, c.space).energy(solved.u);
     near(norms.energy + of_springs, "energy", 1e-8);
-    near(norms.sigma, "sigma_norm", 1e-8);
+    near(std::sqrt(norms.sigma * norms.sigma - rest), "sigma_norm", 1e-8);
     const auto stress =
         certify::equilibrate<2>(c.form, solved.u, solved.traction, 0, 0, certify::PatchStress::afw);
     const certify::Estimate bound =
         certify::estimate<2>(c.form, solved.u, stress, certify::ContactRule::reference);
-    near(bound.total, "bound", 1e-6);
+    near(std::sqrt(bound.total * bound.total - rest), "bound", 1e-6);
     if (!expected["dual_norm"].is_null())
     {
       EXPECT_GE(bound.total, expected["dual_norm"].get<double>());

@@ -73,6 +73,26 @@ void add_supports(const Diagnosis& diagnosis, Findings& findings)
                                     : "displacement conditions alone stop every rigid motion"});
 }
 
+/// What gives loads.strain(), in words.
+std::string cause_of_strain(const LoadFacts& loads, const std::string& stress_unit,
+                            const std::string& length_unit)
+{
+  const double strain = loads.strain();
+  const auto of_stress = [&](const char* stresses, double stress)
+  {
+    return fmt::format("{} near {:.3g}{}, E = {:.4g}{}", stresses, stress, stress_unit, loads.smallest_E,
+                       stress_unit);
+  };
+  if (loads.stress() / loads.smallest_E >= strain) return of_stress("stresses", loads.stress());
+  if (loads.initial_stress / loads.smallest_E >= strain)
+    return of_stress("initial stresses", loads.initial_stress);
+  if (loads.thermal_strain >= strain) return "alpha times the change of the temperature";
+  return fmt::format(
+      "{} {:.3g}{} over the size {:.4g}{}",
+      loads.displacement_strain >= strain ? "prescribed displacements of" : "interferences up to",
+      strain * loads.size, length_unit, loads.size, length_unit);
+}
+
 Finding strain_finding(const Diagnosis& diagnosis)
 {
   const LoadFacts& loads = diagnosis.loads;
@@ -85,6 +105,8 @@ Finding strain_finding(const Diagnosis& diagnosis)
                      {"body_stress", loads.body_stress},
                      {"displacement_strain", loads.displacement_strain},
                      {"interference_strain", loads.interference_strain},
+                     {"thermal_strain", loads.thermal_strain},
+                     {"initial_stress", loads.initial_stress},
                      {"E", loads.smallest_E}};
   if (loads.strain() == 0)
   {
@@ -96,15 +118,8 @@ Finding strain_finding(const Diagnosis& diagnosis)
         "a displacement";
     return finding;
   }
-  const bool stresses = loads.stress() / loads.smallest_E >= loads.strain();
-  const char* lengths =
-      loads.displacement_strain >= loads.strain() ? "prescribed displacements of" : "interferences up to";
-  finding.text =
-      stresses ? fmt::format("expect strains of about {:.2g} % (stresses near {:.3g}{}, E = {:.4g}{})",
-                             100 * loads.strain(), loads.stress(), stress_unit, loads.smallest_E, stress_unit)
-               : fmt::format("expect strains of about {:.2g} % ({} {:.3g}{} over the size {:.4g}{})",
-                             100 * loads.strain(), lengths, loads.strain() * loads.size, length_unit,
-                             loads.size, length_unit);
+  finding.text = fmt::format("expect strains of about {:.2g} % ({})", 100 * loads.strain(),
+                             cause_of_strain(loads, stress_unit, length_unit));
   if (loads.strain() < tiny_strain)
   {
     finding.severity = Severity::note;

@@ -86,6 +86,28 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   return resultant;
 }
 
+/// Sets thermal strain and initial stress, at the points of the rule.
+template <int dim>
+void measure_initial_stress(const contact::NitscheForm<dim>& form, LoadFacts& facts)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const problem::Problem<dim>& problem = form.problem();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const problem::Region<dim>& region = problem.regions()[mesh.region(c)];
+    if (!region.has_initial_stress()) continue;
+    for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), form.data().cell_rule()))
+    {
+      const double warmer =
+          region.material.expansion == 0 ? 0 : region.temperature(x) - region.reference_temperature(x);
+      Tensor<dim> rest = problem.initial_stress(mesh.region(c), x);
+      rest.diagonal().array() += thermal_modulus(region.material) * warmer;
+      facts.thermal_strain = std::max(facts.thermal_strain, std::abs(region.material.expansion * warmer));
+      facts.initial_stress = std::max(facts.initial_stress, rest.norm());
+    }
+  }
+}
+
 /// Boundaries with negative pressure somewhere, with the lowest value.
 template <int dim>
 std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
@@ -173,7 +195,7 @@ double shift_on(const contact::Springs<dim>& springs, const Point<dim>& force)
 
 ElasticConstants elastic_constants(const problem::Material& material, int dimension)
 {
-  const auto& [lambda, mu, plane] = material;
+  const auto& [lambda, mu, plane, expansion] = material;
   const bool plane_stress = dimension == 2 && plane == problem::PlaneModel::stress;
   const double nu = plane_stress ? lambda / (lambda + 2 * mu) : lambda / (2 * (lambda + mu));
   return {2 * mu * (1 + nu), nu};
@@ -186,7 +208,8 @@ double LoadFacts::stress() const
 
 double LoadFacts::strain() const
 {
-  return std::max({stress() / smallest_E, displacement_strain, interference_strain});
+  return std::max({stress() / smallest_E, displacement_strain, interference_strain, thermal_strain,
+                   initial_stress / smallest_E});
 }
 
 template <int dim>
@@ -209,6 +232,7 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
     facts.spring_shift = shift_on(form.springs(), resultant) / facts.size;
   for (const contact::ContactPoint<dim>& point : form.contact_points())
     facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);
+  measure_initial_stress(form, facts);
   facts.suction = find_suction(form);
   return facts;
 }

@@ -53,14 +53,17 @@ struct LoadFacts
   double displacement_strain = 0;  ///< range of a component, prescribed or of springs at rest, / L; it
                                    ///< includes 0 with contact and springs
   double interference_strain = 0;  ///< the largest interference, -g, / L
+  double thermal_strain = 0;       ///< largest |alpha (temperature - reference)|
+  double initial_stress = 0;       ///< largest |sigma_0| but for temperature
   /// |int f + int g_N| / (L int |K|): how far the loads move what springs alone hold, / L; else 0.
   double spring_shift = 0;
   bool has_springs = false;
   std::vector<Suction> suction;
 
-  /// The largest of these stresses.
+  /// The largest of the stresses that need balance.
   [[nodiscard]] double stress() const;
-  /// stress() / smallest E, displacement_strain or interference_strain, whichever is the largest.
+  /// stress() / smallest E, displacement_strain, interference_strain, thermal_strain or initial_stress /
+  /// smallest E, whichever is the largest.
   [[nodiscard]] double strain() const;
 };
 

@@ -11,4 +11,10 @@ Material lame(double E, double nu, PlaneModel plane)
   return {2 * lambda * mu / (lambda + 2 * mu), mu, plane};
 }
 
+double thermal_modulus(const Material& material)
+{
+  const int free_directions = material.plane == PlaneModel::stress ? 2 : 3;
+  return (free_directions * material.lambda + 2 * material.mu) * material.expansion;
+}
+
 }  // namespace tribound::problem

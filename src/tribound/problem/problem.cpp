@@ -108,6 +108,24 @@ int group_number(const std::string& name, std::span<const std::string> groups, c
 }
 
 template <int dim>
+Tensor<dim> symmetric_unit(int i)
+{
+  constexpr std::array<std::array<int, 2>, 3> off_diagonal = {{{0, 1}, {1, 2}, {0, 2}}};
+  Tensor<dim> result = Tensor<dim>::Zero();
+  const auto [r, c] = i < dim ? std::array{i, i} : off_diagonal[i - dim];
+  result(r, c) = result(c, r) = 1;
+  return result;
+}
+
+template <int dim>
+bool Region<dim>::has_initial_stress() const
+{
+  const bool is_heated =
+      material.expansion != 0 && !(temperature.is_zero() && reference_temperature.is_zero());
+  return is_heated || !std::ranges::all_of(initial_stress, &Field::is_zero);
+}
+
+template <int dim>
 bool BoundaryCondition<dim>::fixes_any() const
 {
   return std::ranges::any_of(displacement, [](const auto& component) { return component.has_value(); });
@@ -303,6 +321,46 @@ bool Problem<dim>::body_force_is_zero(int region) const
 }
 
 template <int dim>
+Tensor<dim> Problem<dim>::initial_stress(int region, const Point<dim>& x) const
+{
+  const Region<dim>& r = regions_[region];
+  Tensor<dim> result = Tensor<dim>::Zero();
+  if (r.material.expansion != 0)
+    result.diagonal().array() -=
+        thermal_modulus(r.material) * (r.temperature(x) - r.reference_temperature(x));
+  for (int i = 0; i < n_symmetric<dim>; ++i)
+    if (!r.initial_stress[i].is_zero()) result += r.initial_stress[i](x) * symmetric_unit<dim>(i);
+  return result;
+}
+
+template <int dim>
+double Problem<dim>::initial_stress_zz(int region, const Point<dim>& x) const
+{
+  const Region<dim>& r = regions_[region];
+  if (dim == 3 || r.material.plane == PlaneModel::stress) return 0;
+  const double warmer = r.material.expansion == 0 ? 0 : r.temperature(x) - r.reference_temperature(x);
+  return r.initial_stress_zz(x) - thermal_modulus(r.material) * warmer;
+}
+
+template <int dim>
+bool Problem<dim>::has_initial_stress() const
+{
+  return std::ranges::any_of(regions_, &Region<dim>::has_initial_stress);
+}
+
+template <int dim>
+Problem<dim> Problem<dim>::without_initial_stress() const
+{
+  Problem result = *this;
+  for (Region<dim>& region : result.regions_)
+  {
+    region.initial_stress = {};
+    region.temperature = region.reference_temperature = region.initial_stress_zz = Field();
+  }
+  return result;
+}
+
+template <int dim>
 template <class Self, class Visit>
 void Problem<dim>::for_each_contact(Self& problem, const Visit& visit)
 {
@@ -333,7 +391,12 @@ void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
     if (auto* joint = std::get_if<JointLaw>(&contact.law)) visit(joint->threshold);
   };
   for (auto& region : problem.regions_)
+  {
     for (auto& component : region.body_force) visit(component);
+    for (auto& component : region.initial_stress) visit(component);
+    for (auto* datum : {&region.temperature, &region.reference_temperature, &region.initial_stress_zz})
+      visit(*datum);
+  }
   for (auto& boundary : problem.boundaries_)
   {
     for (auto& component : boundary.displacement)
@@ -392,6 +455,10 @@ bool Problem<dim>::has_contact() const
          std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.contact.has_value(); });
 }
 
+template Tensor<2> symmetric_unit<2>(int);
+template Tensor<3> symmetric_unit<3>(int);
+template struct Region<2>;
+template struct Region<3>;
 template struct BoundaryCondition<2>;
 template struct BoundaryCondition<3>;
 template BoundaryCondition<2> with_displacement<2>(const std::string&, std::array<std::optional<Field>, 2>);

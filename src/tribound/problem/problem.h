@@ -23,13 +23,29 @@
 namespace tribound::problem
 {
 
-/// What a region of the body is made of, and the force on it.
+/// The entries of a symmetric tensor: xx, yy, xy in 2D, xx, yy, zz, xy, yz, xz in 3D.
+template <int dim>
+inline constexpr int n_symmetric = dim*(dim + 1) / 2;
+
+/// The symmetric tensor whose entry number i is 1, the others 0.
+template <int dim>
+[[nodiscard]] Tensor<dim> symmetric_unit(int i);
+
+/// What a region of the body is made of, the force on it, and the stress that it has without deformation,
+///     sigma_0 = initial stress - beta (temperature - reference) I,  beta = thermal_modulus(material).
 template <int dim>
 struct Region
 {
   std::string name{};  ///< of the mesh; empty: every region without an entry of its own
   Material material;
-  std::array<Field, dim> body_force{};  ///< force per volume
+  std::array<Field, dim> body_force{};                   ///< force per volume
+  std::array<Field, n_symmetric<dim>> initial_stress{};  ///< without that of the temperature
+  Field temperature{};
+  Field reference_temperature{};  ///< at which the region is free of thermal stress
+  Field initial_stress_zz{};      ///< 2D, plane strain
+
+  /// Whether sigma_0 can be non-zero.
+  [[nodiscard]] bool has_initial_stress() const;
 };
 
 /// Contact with a rigid obstacle or another body.
@@ -185,6 +201,14 @@ class Problem
   [[nodiscard]] bool has_springs() const;
   /// Whether f vanishes identically in the region.
   [[nodiscard]] bool body_force_is_zero(int region) const;
+  /// sigma_0 in the region at x: sigma(u) = C eps(u) + sigma_0.
+  [[nodiscard]] Tensor<dim> initial_stress(int region, const Point<dim>& x) const;
+  /// Its entry zz in 2D; 0 in plane stress and in 3D.
+  [[nodiscard]] double initial_stress_zz(int region, const Point<dim>& x) const;
+  /// Whether sigma_0 can be non-zero in some region.
+  [[nodiscard]] bool has_initial_stress() const;
+  /// The same problem with sigma_0 = 0: what differences of solutions obey.
+  [[nodiscard]] Problem without_initial_stress() const;
 
   /// The condition on boundary number `tag`; a negative tag means a facet in no group: traction-free.
   [[nodiscard]] const BoundaryCondition<dim>& boundary(int tag) const

@@ -83,7 +83,7 @@ TEST(CaseFacts, UnitsAreLabels)
 
 TEST(Lame, FollowsTheFormulas)
 {
-  const auto [lambda, mu, plane] = problem::lame(2.5, 0.25, problem::PlaneModel::strain);
+  const auto [lambda, mu, plane, expansion] = problem::lame(2.5, 0.25, problem::PlaneModel::strain);
   EXPECT_DOUBLE_EQ(lambda, 1.0);
   EXPECT_DOUBLE_EQ(mu, 1.0);
   EXPECT_DOUBLE_EQ(problem::lame(3.0, 0.0, problem::PlaneModel::strain).lambda, 0.0);
@@ -94,7 +94,7 @@ TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
   // sigma_xx = E eps_xx and sigma_yy = 0, that is eps_yy = -nu eps_xx.
   const double E = 2.1;
   const double nu = 0.3;
-  const auto [lambda, mu, plane] = problem::lame(E, nu, problem::PlaneModel::stress);
+  const auto [lambda, mu, plane, expansion] = problem::lame(E, nu, problem::PlaneModel::stress);
   EXPECT_NEAR(lambda * (1 - nu) + 2 * mu, E, 1e-14);
   EXPECT_NEAR(lambda * (1 - nu) - 2 * mu * nu, 0.0, 1e-14);
 }

@@ -15,7 +15,7 @@ namespace tribound::certify
 struct BoundComponents
 {
   double osc = 0;    ///< (h_T / pi) ||f - Pi^{p-1} f||
-  double str = 0;    ///< ||sigma_dis - sigma(u)||
+  double str = 0;    ///< ||sigma_dis - sigma(u)||, sigma(u) = C eps(u) + sigma_0
   double neu = 0;    ///< sum over Neumann facets of C_{T,F} ||g_N - Pi^p_F g_N||
   double lin1 = 0;   ///< ||sigma_lin||
   double cnt = 0;    ///< (sum h_F ||[P^n]_- - sigma_dis^n||_F^2)^{1/2}

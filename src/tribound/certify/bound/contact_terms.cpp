@@ -119,7 +119,8 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
 {
   const auto without_gap = form_.traction_without_gap(u, k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
-  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = without_gap.col(q);
+  const auto initial = form_.initial_traction(k);
+  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = without_gap.col(q) + initial.col(q);
   const std::vector<Point<dim>> of_augmented = project(augmented);
   const std::vector<Point<dim>> of_dis = project(on_segment(t.dis, k));
   Fields result{};
@@ -290,12 +291,13 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, t);
   if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
-  if (problem::cone(segment.contact->law).is_tied) return result;  // T = P is its own projection
+  if (problem::cone(segment.contact->law).is_tied)  // T = P is its own projection
+    return with_initial_deviation(k, result);
   const Fields on_k = fields(k, u, t);
   const bool vanishes =
       std::ranges::all_of(on_k, [](const Pair& pair)
                           { return std::ranges::all_of(pair.entries, [](double x) { return x == 0; }); });
-  if (vanishes && has_no_traction_at_rest(form_, k)) return result;
+  if (vanishes && has_no_traction_at_rest(form_, k)) return with_initial_deviation(k, result);
   std::vector<Part> parts;
   if (form_.data().contact_parts(k).empty())
     parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
@@ -305,7 +307,22 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   if (segment.varying_normal != nullptr) resolve_normal(k, parts);
   if (rule_ == ContactRule::resolved) settle(k, parts);
   for (const Part& part : parts) add_part(segment, part, result);
-  return result;
+  return with_initial_deviation(k, result);
+}
+
+/// T is Lipschitz continuous in P: normal part with constant 1, tangential part with 1, and the coefficient
+/// of friction times the change of the normal part.
+template <int dim>
+ContactSquares ContactTerms<dim>::with_initial_deviation(int k, ContactSquares squares) const
+{
+  const double deviation = form_.initial_deviation(k);
+  if (deviation == 0) return squares;
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
+  const double missed = std::sqrt(segment.h * segment.measure) * deviation;
+  squares.cnt = std::pow(std::sqrt(squares.cnt) + missed, 2);
+  squares.frc =
+      std::pow(std::sqrt(squares.frc) + (1 + problem::cone(segment.contact->law).coefficient) * missed, 2);
+  return squares;
 }
 
 /// Where the contact is open for any gap and water pressure between the points, the gap does not matter. P^n

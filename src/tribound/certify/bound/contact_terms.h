@@ -71,7 +71,8 @@ class ContactTerms
   static constexpr int n_halves = 1 << (dim - 1);
   static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree);
 
-  /// Coefficients of {sigma(u)} - gamma [u], which is P(u) without the gap, then of Pi_k T.
+  /// Coefficients of {sigma(u)} - gamma [u], which is P(u) without the gap, sigma_0 being interpolated, then
+  /// of Pi_k T.
   static constexpr int second = padded(dim);
   using Pair = DenseVector<2 * second>;
   [[nodiscard]] static Eigen::Map<const Point<dim>> augmented_of(const Pair& pair)
@@ -166,6 +167,8 @@ class ContactTerms
   /// Sets what is missed if N is not a polynomial on the piece, from A, Pi_k T and the kinks there.
   void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
                   std::span<const Point<dim>> dis, Integrals& integrals) const;
+  /// With what the interpolation of the initial stress may add to cnt and frc.
+  [[nodiscard]] ContactSquares with_initial_deviation(int k, ContactSquares squares) const;
   /// Halves parts until the deviation of N from polynomials is negligible on each.
   void resolve_normal(int k, std::vector<Part>& parts) const;
   /// Whether P^n > 0 on a part for any gap and N between the points.

@@ -62,6 +62,12 @@ Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rul
     for (int i = 0; i < table.n_nodes; ++i)
       for (int k = 0; k < dim; ++k)
         gradient_[(k * table.n_nodes + i) * n_points + q] = table.gradients_at(q)[i][k];
+  if (!form.problem().has_initial_stress()) return;
+  const auto n_theta = static_cast<std::size_t>(fem::polynomial_dimension(dim, form.space().degree()));
+  theta_.resize(n_theta * n_points);
+  for (int q = 0; q < n_points; ++q)
+    fem::orthonormal_values<dim>(form.space().degree(), rule_.points[q],
+                                 std::span(theta_).subspan(q * n_theta, n_theta));
 }
 
 template <int dim>
@@ -113,7 +119,8 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
   return result;
 }
 
-/// sigma_dis - sigma(u) at quadrature points; shares nothing with the construction of sigma_dis.
+/// sigma_dis - sigma(u) at quadrature points, sigma_0 projected on P^p; shares nothing with the construction
+/// of sigma_dis.
 template <int dim>
 void Estimator<dim>::evaluate(std::span<const double> u, const Stress<dim>& stress, Index cell,
                               CellFields& fields) const
@@ -150,9 +157,23 @@ void Estimator<dim>::evaluate(std::span<const double> u, const Stress<dim>& stre
       }
     difference[q] = equilibrated - contact::sigma<dim>(material, reference * to_physical);
   }
+  const std::span<const Tensor<dim>> initial = form_.data().initial_stress().coefficients(cell);
+  const std::size_t n_theta = theta_.size() / n_points;
+  for (std::size_t j = 0; j < std::min(n_theta, initial.size()); ++j)
+    for (int q = 0; q < n_points; ++q) difference[q] -= theta_[q * n_theta + j] * initial[j];
 }
 
-/// ||sigma_dis - sigma(u)||_T, and ||sigma_lin||_T and ||sigma_reg||_T from their coefficients.
+/// The norm of their difference on the cell.
+template <int dim>
+double Estimator<dim>::norm_of_difference(Index cell, const CellFields& fields) const
+{
+  double squares = 0;
+  for (int q = 0; q < rule_.size(); ++q) squares += rule_.weights[q] * fields.difference[q].squaredNorm();
+  return std::sqrt(cell_map(form_.space().mesh(), cell).det * squares);
+}
+
+/// ||sigma_dis - sigma(u)||_T with the given initial stress, and ||sigma_lin||_T and ||sigma_reg||_T from
+/// their coefficients.
 template <int dim>
 void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                                   Estimate& result) const
@@ -166,9 +187,8 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
     for (Index c = first(thread); c < first(thread + 1); ++c)
     {
       evaluate(u, stress, c, fields);
-      double squares = 0;
-      for (int q = 0; q < rule_.size(); ++q) squares += rule_.weights[q] * fields.difference[q].squaredNorm();
-      result.cells[c].str = std::sqrt(cell_map(mesh, c).det * squares);
+      result.cells[c].str =
+          form_.data().initial_stress().remainder(c).added_to(norm_of_difference(c, fields));
       result.cells[c].lin1 = norm(stress.lin_in(c));
       result.cells[c].reg1 = norm(stress.reg_in(c));
     }
@@ -182,6 +202,7 @@ template <int dim>
 void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>& stress,
                                     Estimate& result) const
 {
+  CellFields fields;
   std::vector<TransferLifting<dim>> liftings;
   for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions.running()))
   {
@@ -194,8 +215,12 @@ void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>
     if (eta.mor == 0) continue;
     const TransferLifting<dim>& most = *std::ranges::max_element(liftings, {}, &TransferLifting<dim>::norm);
     const double change = most.change(difference(u, stress, cell));
-    eta.str_mor = std::min(eta.str + most.norm(), std::sqrt(std::max(0.0, eta.str * eta.str + change))) +
-                  (eta.mor - most.norm());
+    evaluate(u, stress, cell, fields);
+    const double norm = norm_of_difference(cell, fields);
+    eta.str_mor =
+        std::min(eta.str + most.norm(), std::sqrt(std::max(0.0, norm * norm + change)) +
+                                            form_.data().initial_stress().remainder(cell).added_to(0)) +
+        (eta.mor - most.norm());
   }
 }
 

@@ -79,10 +79,11 @@ class Estimator
   {
     std::vector<double> dis;              ///< sigma_dis, [(a dim + k) n_points + q]
     std::vector<double> derivative;       ///< d_k u_a in reference coordinates, same layout
-    std::vector<Tensor<dim>> difference;  ///< sigma_dis - sigma(u) at the points
+    std::vector<Tensor<dim>> difference;  ///< sigma_dis - sigma(u) at the points, with Pi^p sigma_0
   };
 
   void evaluate(std::span<const double> u, const Stress<dim>& stress, Index cell, CellFields& fields) const;
+  [[nodiscard]] double norm_of_difference(Index cell, const CellFields& fields) const;
   void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                     Estimate& result) const;
   void transfer_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
@@ -98,7 +99,8 @@ class Estimator
   fem::Quadrature<dim> rule_;           ///< exact to degree 2p
   StressTabulation<dim> stress_table_;  ///< basis of the stress at its points
   std::vector<double>
-      gradient_;  ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
+      gradient_;               ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
+  std::vector<double> theta_;  ///< orthonormal basis of P^p at the points, [q n + j]; empty without sigma_0
 };
 
 /// The components of one iterate.

@@ -11,6 +11,7 @@
 #include "tribound/certify/energy/admissible_stress.h"
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/equilibrate/cell_operator.h"
+#include "tribound/certify/equilibrate/initial_moments.h"
 
 namespace tribound::certify
 {
@@ -26,6 +27,7 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
                        std::vector<double>(n_cells)};
   std::vector<double> c(u.begin(), u.end());
   for (std::size_t i = 0; i < c.size(); ++i) c[i] -= v[i];
+  const InitialMoments<dim, q> initial(form);
   const int n_threads = max_threads();
   std::vector<double> unbalanced(n_threads, 0.0);
   const auto on_thread = [&](int thread)
@@ -36,16 +38,17 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
       const auto cell = static_cast<Index>(k);
       const SortedCell<dim> sorted = make_sorted_cell(mesh, cell);
       const problem::Material& material = form.problem().material(mesh.region(cell));
-      const auto sigma = [&](std::span<const double> w)
+      const auto elastic = [&](std::span<const double> w)
       { return discrete_stress<dim, q>(sorted, material, space.cell_nodes(cell), w); };
       const std::span<const double> sigma_h = stress.dis_in(cell);
-      const AdmissibleStress<dim, q> tau = solver.solve(sorted, material, sigma_h, sigma(v));
+      const AdmissibleStress<dim, q> tau =
+          solver.solve(sorted, material, sigma_h, initial.total(cell, sorted, elastic(v)));
       const double size = norm(sigma_h);
       if (size > 0) unbalanced[thread] = std::max(unbalanced[thread], tau.unbalanced / size);
-      const PiecewiseStress<dim, q> of_c = on_pieces<dim, q>(sigma(c));
+      const PiecewiseStress<dim, q> of_c = on_pieces<dim, q>(elastic(c));
       result.square[k] = tau.square;
       result.correction[k] = compliance_product(material, of_c, of_c);
-      PiecewiseStress<dim, q> from_mean;  // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - sigma(c)
+      PiecewiseStress<dim, q> from_mean;  // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - C eps(c)
       add_multiple(from_mean, 0.5, tau.difference);
       add_multiple(from_mean, -1, of_c);
       result.to_discrete[k] = compliance_product(material, from_mean, from_mean);

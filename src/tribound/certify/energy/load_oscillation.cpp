@@ -69,6 +69,7 @@ LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form, std::spa
   {
     const double stiffness = stiffness_of(form, c);
     least = std::min(least, stiffness);
+    result.cells[c] += data.initial_stress().remainder(c).added_to(0);
     result.cells[c] /= std::sqrt(stiffness);
     if (missed[c] > 0) squares += missed[c] * missed[c] / mesh::cell_map(mesh, c).measure();
   }

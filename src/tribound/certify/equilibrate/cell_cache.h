@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "tribound/certify/equilibrate/initial_moments.h"
 #include "tribound/certify/equilibrate/prepared_cell.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/polynomials.h"
@@ -106,9 +107,8 @@ void fill(RowCell<dim, p>& cell, Index c, const BodyMoments<dim, p>& body,
   constexpr int m = Sizes<dim, p>::multiplier;
   const auto by_rows = [](const DenseVector<dim * m>& moments)
   {
-    typename RowCell<dim, p>::CellRows rows;
-    for (int r = 0; r < dim; ++r)
-      for (int i = 0; i < m; ++i) rows(i, r) = moments[r * m + i];
+    typename RowCell<dim, p>::CellRows rows{};
+    add_by_rows<dim, p>(rows, moments);
     return rows;
   };
   cell.divergence = by_rows(discrete_divergence<dim, p>(cell.sorted, cell.sigma));
@@ -135,6 +135,7 @@ struct CellSource
   const contact::NitscheForm<dim>& form;
   std::span<const double> u;
   const BodyMoments<dim, p>& body;
+  const InitialMoments<dim, p>& initial;
   const RepeatedShapes<Operator>& shapes;
   std::span<const StressMetric> metrics = {};  ///< of the regions; empty: L2 everywhere
   std::span<const Tensor<dim>> turning = {};   ///< K_{T,a}, see Equilibrator::balanced(); empty: 0
@@ -148,6 +149,8 @@ struct CellSource
     cell.one = moment_of_one<dim, p>(cell.sorted);
     cell.sigma = discrete_stress<dim, p>(cell.sorted, form.problem().material(space.mesh().region(c)),
                                          space.cell_nodes(c), u);
+    initial.add(c, cell.sorted, cell.sigma);
+    initial.find_rest(c, cell.sorted, cell.rest);
     const std::size_t first = turning.empty() ? 0 : static_cast<std::size_t>(c) * (dim + 1);
     fill(cell, c, body, turning.subspan(first, turning.empty() ? 0 : dim + 1));
   }

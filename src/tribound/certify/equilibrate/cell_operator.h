@@ -115,7 +115,16 @@ template <int dim, int p>
 [[nodiscard]] DenseVector<Sizes<dim, p>::u> discrete_divergence(const SortedCell<dim>& cell,
                                                                 const DiscreteStress<dim, p>& sigma);
 
-/// sigma(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
+/// The same of a stress of degree p.
+template <int dim, int p>
+[[nodiscard]] DenseVector<Sizes<dim, p>::u> divergence_moments(const SortedCell<dim>& cell,
+                                                               const StressCoefficients<dim, p>& tau);
+
+/// at(f, r, i) += the coefficient i of row r of the normal trace N tau on facet f.
+template <int dim, int p, class At>
+void add_normal_traces(const SortedCell<dim>& cell, const StressCoefficients<dim, p>& tau, const At& at);
+
+/// C eps(u) in a cell in the orthonormal basis of P^{p-1}; nodes in the order of the space's basis.
 template <int dim, int p>
 [[nodiscard]] DiscreteStress<dim, p> discrete_stress(const SortedCell<dim>& cell,
                                                      const problem::Material& material,

@@ -179,6 +179,42 @@ DenseVector<Sizes<dim, p>::u> discrete_divergence(const SortedCell<dim>& cell,
   return result;
 }
 
+template <int dim, int p>
+DenseVector<Sizes<dim, p>::u> divergence_moments(const SortedCell<dim>& cell,
+                                                 const StressCoefficients<dim, p>& tau)
+{
+  using S = Sizes<dim, p>;
+  DenseVector<S::u> result;
+  for (int r = 0; r < dim; ++r)
+    for (int k = 0; k < dim; ++k)
+    {
+      std::array<double, S::stress> row{};  // component k of row r on the reference cell
+      for (int c = 0; c < dim; ++c)
+        for (int j = 0; j < S::stress; ++j) row[j] += cell.inverse(k, c) * tau[(dim * r + c) * S::stress + j];
+      const auto& derivative = reference<dim, p>().derivative[k];
+      for (int i = 0; i < S::multiplier; ++i)
+        for (int j = 0; j < S::stress; ++j) result[r * S::multiplier + i] += derivative(i, j) * row[j];
+    }
+  return result;
+}
+
+template <int dim, int p, class At>
+void add_normal_traces(const SortedCell<dim>& cell, const StressCoefficients<dim, p>& tau, const At& at)
+{
+  using S = Sizes<dim, p>;
+  for (int f = 0; f <= dim; ++f)
+    for (int r = 0; r < dim; ++r)
+    {
+      std::array<double, S::stress> normal{};
+      const double scale = -1 / std::sqrt(cell.grad_norm[f]);
+      for (int c = 0; c < dim; ++c)
+        for (int j = 0; j < S::stress; ++j)
+          normal[j] += scale * cell.grad[f][c] * tau[(dim * r + c) * S::stress + j];
+      for (int i = 0; i < S::facet; ++i)
+        for (int j = 0; j < S::stress; ++j) at(f, r, i) += reference<dim, p>().trace[f](i, j) * normal[j];
+    }
+}
+
 /// C tau.
 template <int dim, int p>
 void CellOperator<dim, p>::apply_metric(StressCoefficients<dim, p>& stress) const

@@ -148,6 +148,8 @@ void Equilibration<Patch>::recover(Index cell, const Cell& prepared, const Share
     if (problem == 0)
       for (int entry = 0; entry < dim * dim; ++entry)
         for (int j = 0; j < m; ++j) sigma[entry * S::stress + j] += prepared.sigma[entry * m + j];
+    for (std::size_t a = 0; problem == 0 && a < prepared.rest.size(); ++a)
+      for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] += prepared.rest[a][i];
     std::vector<double>& values = problem == 0 ? stress_.dis : problem == 1 ? stress_.lin : stress_.reg;
     std::ranges::copy(sigma, &values[(problem == 0 ? cell : stress_.lin_block[cell]) * size]);
   }
@@ -168,6 +170,7 @@ class MeshEquilibrator : public Equilibrator<Patch::Kind::dim>::Implementation
         n_threads_(n_threads > 0 ? n_threads : max_threads()),
         metrics_(std::move(metrics)),
         body_(form),
+        initial_(form),
         shapes_(mesh_, metrics_)
   {
   }
@@ -184,7 +187,7 @@ class MeshEquilibrator : public Equilibrator<Patch::Kind::dim>::Implementation
         if (mesh_.has_patch(v) && (with_dis || data.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh_, std::span<const Index>(vertices), n_threads_);
     }
-    const CellSource<Kind> source{form_, u, body_, shapes_, metrics_, turning};
+    const CellSource<Kind> source{form_, u, body_, initial_, shapes_, metrics_, turning};
     Stress<dim> stress = Equilibration<Patch>(mesh_, data, source, *partition, with_dis).run();
     stress.tractions = data.tractions();
     return stress;
@@ -196,6 +199,7 @@ class MeshEquilibrator : public Equilibrator<Patch::Kind::dim>::Implementation
   int n_threads_;
   std::vector<StressMetric> metrics_;  ///< of the regions; empty: L2 everywhere
   BodyMoments<dim, p> body_;
+  InitialMoments<dim, p> initial_;
   RepeatedShapes<typename Kind::Operator> shapes_;
   std::optional<VertexPartition> all_;         ///< of all vertices
   std::optional<VertexPartition> on_contact_;  ///< of those on Gamma_C

@@ -68,8 +68,9 @@ void Patch<dim, p>::assemble()
   }
 }
 
-/// g = N G - C^T (B B^T)^{-1} r with the outer facet eliminated. With div G = psi_a div sigma + sigma grad
-/// psi_a, r is (psi_a (div sigma + f) + y_a, v) on U and -(w_a, q) on Lambda for dis; (-y_lin, v) and
+/// G = psi_a (C eps(u) + Pi^{p-1} sigma_0) + rest, and g = N G - C^T (B B^T)^{-1} r with the outer facet
+/// eliminated. With div G = psi_a div sigma + sigma grad psi_a, r is (psi_a (div sigma + f) + y_a, v) on U
+/// and -(w_a, q) on Lambda for dis; (-y_lin, v) and
 /// -(w_lin, q) for lin, and the same for reg.
 template <int dim, int p>
 void Patch<dim, p>::assemble_load(CellPart& part, int problem)
@@ -98,6 +99,12 @@ void Patch<dim, p>::assemble_load(CellPart& part, int problem)
         for (int i = 0; i < n; ++i)
           for (int j = 0; j < m; ++j) load(f, r * n + i) += scale * ref.hat_trace[f][o](i, j) * normal[j];
       }
+  }
+  if (problem == 0 && !cell.rest.empty())
+  {
+    add_multiple(r_u, 1, divergence_moments<dim, p>(sorted, cell.rest[o]));
+    add_normal_traces<dim, p>(sorted, cell.rest[o],
+                              [&load](int f, int r, int i) -> double& { return load(f, r * n + i); });
   }
   add_moments(r_u, cell, o, y_[problem], problem == 0 ? 1 : -1);
   cell.op->subtract_load(load, sorted, r_u, w_[problem]);
@@ -194,6 +201,8 @@ StressCoefficients<dim, p> Patch<dim, p>::stress(const PreparedCell<dim, p>& cel
   for (int a = 0; a <= dim; ++a)
   {
     if (problem == 0) add_multiple(r_u, 1, cell.body[a]);
+    if (problem == 0 && !cell.rest.empty())
+      add_multiple(r_u, 1, divergence_moments<dim, p>(cell.sorted, cell.rest[a]));
     if (problem > 0 && !data.on_contact(cell.sorted.vertices[a])) continue;
     const CellShare<dim, p>& share = shares[a][problem];
     add_moments(r_u, cell, a, share.y, problem == 0 ? 1 : -1);

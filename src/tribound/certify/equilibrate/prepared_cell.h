@@ -36,9 +36,11 @@ struct PreparedCell : ShapedCell<CellOperator<dim, p>>
   using S = Sizes<dim, p>;
   using UVector = DenseVector<S::u>;
 
-  DiscreteStress<dim, p> sigma;       ///< sigma(u^k)
+  DiscreteStress<dim, p> sigma;       ///< sigma(u^k), with Pi^{p-1} sigma_0
   UVector divergence;                 ///< moments of div sigma(u^k)
   std::array<UVector, dim + 1> body;  ///< moments of psi_a f
+  /// Of each vertex Pi^p (psi_a sigma_0) - psi_a Pi^{p-1} sigma_0; empty: 0
+  std::vector<StressCoefficients<dim, p>> rest;
   /// [d]: moments of x_d - x_d(vertex 0), on chi of degree <= 1; it has no others
   std::array<std::array<double, S::affine>, dim> coordinates;
 };
@@ -58,12 +60,22 @@ struct RowCell : ShapedCell<RowOperator<dim, p>>
 {
   using CellRows = typename RowOperator<dim, p>::CellRows;
 
-  DiscreteStress<dim, p> sigma;        ///< sigma(u^k)
-  CellRows divergence;                 ///< moments of div sigma(u^k)
-  std::array<CellRows, dim + 1> body;  ///< moments of psi_a f
+  DiscreteStress<dim, p> sigma;                  ///< sigma(u^k), with Pi^{p-1} sigma_0
+  CellRows divergence;                           ///< moments of div sigma(u^k)
+  std::array<CellRows, dim + 1> body;            ///< moments of psi_a f
+  std::vector<StressCoefficients<dim, p>> rest;  ///< as of PreparedCell
   /// [f]: coefficients of sigma(u^k) n |grad lambda_f|^{1/2} on chi
   std::array<CellRows, dim + 1> normal;
 };
+
+/// Adds moments on U to those of the rows.
+template <int dim, int p>
+void add_by_rows(typename RowCell<dim, p>::CellRows& rows, const DenseVector<Sizes<dim, p>::u>& moments)
+{
+  constexpr int m = Sizes<dim, p>::multiplier;
+  for (int r = 0; r < dim; ++r)
+    for (int i = 0; i < m; ++i) rows(i, r) += moments[r * m + i];
+}
 
 /// The same as CellShare.
 template <int dim, int p>

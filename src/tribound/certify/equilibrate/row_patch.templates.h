@@ -119,6 +119,12 @@ void RowPatch<dim, p>::assemble_load(CellPart& part, int problem)
         for (int j = 0; j < m; ++j)
           lanes_at(load[f].row(i)) += ref.hat_trace[f][o](i, j) * lanes_at(cell.normal[f].row(j));
   }
+  if (problem == 0 && !cell.rest.empty())
+  {
+    add_by_rows<dim, p>(r, divergence_moments<dim, p>(cell.sorted, cell.rest[o]));
+    add_normal_traces<dim, p>(cell.sorted, cell.rest[o],
+                              [&load](int f, int row, int i) -> double& { return load[f](i, row); });
+  }
   for (int c = 0; c < dim; ++c) r(0, c) += (problem == 0 ? 1 : -1) * y_[problem][c] * cell.one;
   cell.op->subtract_load(load, r);
 
@@ -220,6 +226,8 @@ StressCoefficients<dim, p> RowPatch<dim, p>::stress(const RowCell<dim, p>& cell,
   for (int a = 0; a <= dim; ++a)
   {
     if (problem == 0) add_multiple(r, 1, cell.body[a]);
+    if (problem == 0 && !cell.rest.empty())
+      add_by_rows<dim, p>(r, divergence_moments<dim, p>(cell.sorted, cell.rest[a]));
     if (problem > 0 && !data.on_contact(cell.sorted.vertices[a])) continue;
     const RowShare<dim, p>& share = shares[a][problem];
     for (int c = 0; c < dim; ++c) r(0, c) += (problem == 0 ? 1 : -1) * share.y[c] * cell.one;

@@ -220,9 +220,10 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
   constexpr double share = 1e-5;  // of the effect of the data: well below any bound
   if (load_.empty())
   {
-    load_ = contact::assemble_load(
-        contact::DiscreteData<dim>(form_.problem(), refined_.mesh, space_.degree(), {}, {.share = share}),
-        space_);
+    const contact::DiscreteData<dim> data(form_.problem(), refined_.mesh, space_.degree(), {},
+                                          {.share = share});
+    load_ = contact::assemble_load(data, space_);
+    contact::add_initial_stress<dim>(data, space_, load_);
     springs_.add_rest(load_);
   }
   return residual(u, load_);

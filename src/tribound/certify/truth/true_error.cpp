@@ -77,7 +77,8 @@ RicherSolution compare_with_richer(const contact::NitscheForm<dim>& form, std::s
   result.failure = solution.message;
   if (solution.status != solve::NewtonStatus::converged) return result;
   for (std::size_t i = 0; i < error.size(); ++i) error[i] -= solution.u[i];
-  const contact::StressNorms norms = contact::stress_norms<dim>(form.problem(), space, error);
+  const contact::StressNorms norms =
+      contact::stress_norms<dim>(form.problem().without_initial_stress(), space, error);
   result.error = SolutionError{std::sqrt(norms.energy), norms.sigma};
   if (use) use(richer_form, solution.u);
   return result;

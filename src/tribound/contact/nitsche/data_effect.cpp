@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tribound/contact/nitsche/given_data.h"
+#include "tribound/contact/nitsche/initial_stress.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/problem/formula.h"
 
@@ -73,13 +74,13 @@ double effect_of_water(const mesh::Mesh<dim>& mesh, std::span<const ContactSegme
   return std::sqrt(size * mesh.ranks().sum(squares));
 }
 
-/// The effect of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N||; plus that of prescribed
-/// displacements: the stress that they cause across the body.
+/// The effect of loads, in the dual norm: size ||f|| + size^{1/2} ||g_N|| + ||sigma_0||; plus that of
+/// prescribed displacements: the stress that they cause across the body.
 template <int dim>
 double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, double size)
 {
-  std::array<double, 3> sums{};
-  auto& [body, volume, traction] = sums;
+  std::array<double, 4> sums{};
+  auto& [body, volume, traction, initial] = sums;
   std::array<double, 2> most{};
   auto& [stiffest, displacement] = most;
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
@@ -87,6 +88,8 @@ double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<di
     const SimplexMap<dim, dim> map = simplex_map(mesh, c);
     body += map.measure * std::pow(largest_value(body_datum(problem, mesh, c), map), 2);
     volume += map.measure;
+    if (const int region = mesh.region(c); problem.regions()[region].has_initial_stress())
+      initial += map.measure * std::pow(largest_value(initial_stress_datum(problem, region), map), 2);
     const problem::Material& material = problem.material(mesh.region(c));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
   }
@@ -102,7 +105,7 @@ double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<di
   }
   mesh.ranks().sum(std::span(sums));
   mesh.ranks().max(std::span(most));
-  return size * std::sqrt(body) + std::sqrt(size * traction) +
+  return size * std::sqrt(body) + std::sqrt(size * traction) + std::sqrt(initial) +
          stiffest * displacement / size * std::sqrt(volume);
 }
 

@@ -30,5 +30,6 @@ bool Datum<dim, n>::is_enclosed() const
 template struct Datum<2>;
 template struct Datum<2, 3>;
 template struct Datum<3>;
+template struct Datum<3, 6>;
 
 }  // namespace tribound::contact

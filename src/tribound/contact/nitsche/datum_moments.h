@@ -66,6 +66,11 @@ class DatumMoments
                                                 const DatumWeights& weights, double allowed,
                                                 int max_parts) const;
 
+  /// The moments of a datum that the rule on the whole simplex integrates.
+  [[nodiscard]] std::vector<Point<n>> of_whole(const DatumOnSimplex<k, n>& found) const
+  {
+    return moments(found.parts);
+  }
   /// The values at the points of the rule of the polynomial with the given moments.
   void evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const;
   /// The same at one point of the simplex; missing moments are 0.

@@ -86,6 +86,7 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
       {
         represent_body_forces(allowed / std::sqrt(all.body));
         represent_tractions(allowed / std::sqrt(all.boundary));
+        represent_initial_stress(allowed / std::sqrt(all.body));
         represent_contact(segments, allowed / std::sqrt(all.contact));
       });
   std::array<std::int64_t, 2> cut{effort_.subdivided, effort_.parts};
@@ -121,7 +122,11 @@ void DiscreteData<dim>::count_formulas(Segments segments)
     if (datum.degree() > degree_ + 2) add(is_load, datum.is_enclosed());
   };
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
+  {
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(problem_, mesh_, c), true);
+    if (problem_.regions()[mesh_.region(c)].has_initial_stress())
+      count(initial_stress_datum(problem_, mesh_.region(c)), true);
+  }
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
   {
     count(traction_datum(problem_, mesh_, facet), true);
@@ -201,6 +206,14 @@ void DiscreteData<dim>::represent_tractions(double density)
                  keep(traction_, i, i < mesh_.n_owned_boundary(),
                       facet_moments_(datum, map, weights, density * std::sqrt(map.measure), max_parts_));
                });
+}
+
+template <int dim>
+void DiscreteData<dim>::represent_initial_stress(double density)
+{
+  initial_stress_ = std::make_shared<const InitialStress<dim>>(problem_, mesh_, degree_, density, max_parts_);
+  effort_.subdivided += initial_stress_->subdivided();
+  effort_.parts += initial_stress_->parts();
 }
 
 template <int dim>

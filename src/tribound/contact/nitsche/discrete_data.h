@@ -6,12 +6,14 @@
 /// estimators, and come with bounds of what that leaves out.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "tribound/contact/nitsche/datum_moments.h"
+#include "tribound/contact/nitsche/initial_stress.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
@@ -99,6 +101,8 @@ class DiscreteData
   [[nodiscard]] ContactData contact(const ContactSegment<dim>& segment, std::size_t k,
                                     const Point<dim - 1>& s) const;
 
+  [[nodiscard]] const InitialStress<dim>& initial_stress() const { return *initial_stress_; }
+
   [[nodiscard]] LoadRemainder body_remainder(Index cell) const
   {
     return body_.remainders.empty() ? LoadRemainder{} : body_.remainders[cell];
@@ -139,6 +143,7 @@ class DiscreteData
   // `density`: what a cell or facet may leave out, divided by the root of its measure.
   void represent_body_forces(double density);
   void represent_tractions(double density);
+  void represent_initial_stress(double density);
   void represent_contact(Segments segments, double density);
   void check_signs(const ContactSegment<dim>& segment, const DatumOnSimplex<dim - 1, 3>& found) const;
   template <int k, int n>
@@ -156,6 +161,7 @@ class DiscreteData
   Represented<dim> body_;
   Represented<dim> traction_;
   Represented<3> contact_;
+  std::shared_ptr<const InitialStress<dim>> initial_stress_;
   std::unordered_map<std::size_t, std::vector<ContactDatumPart<dim>>> contact_parts_;
   DataEffort effort_;
 };

@@ -8,6 +8,7 @@
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/fem/evaluation.h"
+#include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
@@ -141,7 +142,9 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
                          std::span<const double> u)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
-  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
+  const bool is_stressed = problem.has_initial_stress();
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(
+      is_stressed ? fem::data_quadrature_degree(space.degree()) : 2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
   // For rigid motions prescribed to boxes in 2D and 3D, p = 1 ... 4, nu = 0.3 and 0.4999, the bound was up to
   // 42.
@@ -150,7 +153,8 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const auto of_cell = [&](std::size_t c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, static_cast<Index>(c));
-    const problem::Material& material = problem.material(mesh.region(static_cast<Index>(c)));
+    const int region = mesh.region(static_cast<Index>(c));
+    const problem::Material& material = problem.material(region);
     const std::span<const Index> nodes = space.cell_nodes(static_cast<Index>(c));
     const double stiffest = 2 * material.mu + dim * material.lambda;
     Eigen::Array3d sums = Eigen::Array3d::Zero();
@@ -159,9 +163,13 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
       const auto gradients = table.gradients_at(q);
       const Tensor<dim> gradient = fem::gradient_at<dim>(nodes, u, gradients, map.inverse_transpose);
       const Tensor<dim> stress = sigma<dim>(material, gradient);
-      const double terms = stiffest * sum_of_terms<dim>(nodes, u, gradients, map.inverse_transpose);
+      Tensor<dim> initial = Tensor<dim>::Zero();
+      if (is_stressed) initial = problem.initial_stress(region, map(rule.points[q]));
+      const double terms =
+          stiffest * sum_of_terms<dim>(nodes, u, gradients, map.inverse_transpose) + initial.norm();
       sums += rule.weights[q] * map.det *
-              Eigen::Array3d(stress.cwiseProduct(gradient).sum(), stress.squaredNorm(), terms * terms);
+              Eigen::Array3d(stress.cwiseProduct(gradient).sum(), (stress + initial).squaredNorm(),
+                             terms * terms);
     }
     return sums;
   };
@@ -206,6 +214,36 @@ std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fe
   return energies;
 }
 
+/// Only Pi^{p-1} sigma_0 counts, since grad phi is in P^{p-1}.
+template <int dim>
+void add_initial_stress(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space,
+                        std::span<double> vector)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  const int degree = space.degree() - 1;
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * degree);
+  const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
+  std::vector<double> theta(fem::polynomial_dimension(dim, degree));
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    const std::span<const Tensor<dim>> coefficients = data.initial_stress().coefficients(c);
+    if (coefficients.empty()) continue;
+    const std::span<const Tensor<dim>> used = coefficients.first(std::min(theta.size(), coefficients.size()));
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
+    const std::span<const Index> nodes = space.cell_nodes(c);
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      fem::orthonormal_values<dim>(degree, rule.points[q], theta);
+      Tensor<dim> stress = Tensor<dim>::Zero();
+      for (std::size_t j = 0; j < used.size(); ++j) stress += theta[j] * used[j];
+      stress = (rule.weights[q] * map.det) * stress * map.inverse_transpose;
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        Eigen::Map<Point<dim>>(&vector[static_cast<std::size_t>(dim) * nodes[i]]) -=
+            stress * table.gradients_at(q)[i];
+    }
+  }
+}
+
 template std::vector<double> apply_stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                              std::span<const double>);
 template std::vector<double> apply_stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
@@ -218,6 +256,8 @@ template std::vector<double> cell_energies(const problem::Problem<2>&, const fem
                                            std::span<const double>);
 template std::vector<double> cell_energies(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                            std::span<const double>);
+template void add_initial_stress(const DiscreteData<2>&, const fem::LagrangeSpace<2>&, std::span<double>);
+template void add_initial_stress(const DiscreteData<3>&, const fem::LagrangeSpace<3>&, std::span<double>);
 template std::vector<double> assemble_load(const DiscreteData<2>&, const fem::LagrangeSpace<2>&);
 template std::vector<double> assemble_load(const DiscreteData<3>&, const fem::LagrangeSpace<3>&);
 

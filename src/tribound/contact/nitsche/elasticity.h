@@ -47,8 +47,8 @@ template <int dim>
 /// The norms of the stress of a displacement u.
 struct StressNorms
 {
-  double energy = 0;  ///< a(u, u), not halved
-  double sigma = 0;   ///< ||sigma(u)||
+  double energy = 0;  ///< a(u, u), not halved: without the initial stress
+  double sigma = 0;   ///< ||sigma(u)||, sigma(u) = C eps(u) + sigma_0
   /// If sigma(u) is only rounding, so that the exact stress is zero as far as can be known: how large
   /// rounding may be, a multiple of the unit round-off times the norm of (2 mu + dim lambda) sum_i |u_i|
   /// |grad phi_i|, whose terms cancel in sigma(u) when u is a rigid motion. Otherwise 0; so under loads,
@@ -67,8 +67,13 @@ template <int dim>
                                                 const fem::LagrangeSpace<dim>& space,
                                                 std::span<const double> u);
 
-/// L(phi_i) = (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included; incomplete at
-/// ghosts. The data are those for the degree of the space.
+/// vector_i -= (sigma_0, grad phi_i) for every degree of freedom; incomplete at ghosts.
+template <int dim>
+void add_initial_stress(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space,
+                        std::span<double> vector);
+
+/// (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included;
+/// incomplete at ghosts. The data are those for the degree of the space.
 template <int dim>
 [[nodiscard]] std::vector<double> assemble_load(const DiscreteData<dim>& data,
                                                 const fem::LagrangeSpace<dim>& space);

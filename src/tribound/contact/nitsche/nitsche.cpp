@@ -44,8 +44,10 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       nodes_(space.degree(), facet_rule().points),
       node_tables_(space.basis(), segments_, nodes_.nodes())
 {
+  add_initial_stress<dim>(data_, space, load_);
   springs_.add_rest(load_);
   look_for_bonds();
+  space.mesh().ranks().together([this] { find_initial_tractions(); });
 }
 
 template <int dim>
@@ -153,10 +155,64 @@ auto NitscheForm<dim>::traction_without_gap(std::span<const double> u, std::size
   return nodal * nodes_.values();
 }
 
+/// The Lipschitz constants of laws with a bond are not known: for them the interpolation must be exact.
+template <int dim>
+void NitscheForm<dim>::find_initial_tractions()
+{
+  if (!problem_->has_initial_stress()) return;
+  initial_tractions_.reserve(segments_.size() * nodes_.nodes().size());
+  initial_deviation_.reserve(segments_.size());
+  for (const ContactSegment<dim>& segment : segments_)
+  {
+    for (const Point<dim - 1>& s : nodes_.nodes())
+      initial_tractions_.push_back(contact::initial_traction(*problem_, space_->mesh(), segment, s));
+    initial_deviation_.push_back(
+        initial_traction_deviation(*problem_, space_->mesh(), segment, space_->degree()));
+    if (initial_deviation_.back() > 0 && problem::has_memory(segment.contact->law))
+      throw InputError(
+          {},
+          fmt::format("temperature or initial stress is no polynomial of degree {} on the "
+                      "interface \"{}\", which has a bond",
+                      space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
+          "a polynomial there, or a higher degree");
+  }
+}
+
+template <int dim>
+auto NitscheForm<dim>::initial_traction(std::size_t k) const -> Columns
+{
+  const auto n = static_cast<std::size_t>(nodes_.values().rows());
+  if (initial_tractions_.empty()) return Columns::Zero(dim, n_segment_points());
+  return Eigen::Map<const Columns>(initial_tractions_[k * n].data(), dim, static_cast<Eigen::Index>(n)) *
+         nodes_.values();
+}
+
+template <int dim>
+std::vector<Point<dim>> NitscheForm<dim>::initial_tractions(std::size_t k, std::span<const Point<dim - 1>> s,
+                                                            WhichData which) const
+{
+  std::vector<Point<dim>> result(s.size(), Point<dim>::Zero());
+  if (initial_tractions_.empty()) return result;
+  if (which == WhichData::given)
+  {
+    std::ranges::transform(s, result.begin(),
+                           [&](const Point<dim - 1>& at) {
+                             return contact::initial_traction(*problem_, space_->mesh(), segments_[k], at);
+                           });
+    return result;
+  }
+  const fem::Tabulation<dim - 1> theta = fem::LagrangeBasis<dim - 1>(space_->degree()).tabulate(s);
+  for (int q = 0; q < theta.n_points; ++q)
+    for (int l = 0; l < theta.n_nodes; ++l)
+      result[q] += theta.values_at(q)[l] * initial_tractions_[k * theta.n_nodes + l];
+  return result;
+}
+
 template <int dim>
 auto NitscheForm<dim>::augmented_traction(std::span<const double> u, std::size_t k) const -> Columns
 {
   Columns result = traction_without_gap(u, k);
+  if (!initial_tractions_.empty()) result += initial_traction(k);
   for (int q = 0; q < n_segment_points(); ++q)
   {
     const ContactPoint<dim>& point = contact_points(k)[q];
@@ -292,6 +348,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
 
   const bool is_own = table.slave == tables_[k].slave;  // the table is that of the contact points
 
+  const std::vector<Point<dim>> initial = initial_tractions(k, table.points, which);
   std::vector<ContactState<dim>> states;
   states.reserve(table.points.size());
   for (int q = 0; q < static_cast<int>(table.points.size()); ++q)
@@ -308,7 +365,7 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
       point.strength = seen.strength;
       point.water = seen.water;
     }
-    const Point<dim> p = on_segment.augmented_traction(u, q) + segment.gamma * gap * n;
+    const Point<dim> p = on_segment.augmented_traction(u, q) + initial[q] + segment.gamma * gap * n;
     const auto [traction, limit, status] = problem::respond<dim>(segment.contact->law, point, p);
     const Point<dim> jump = on_segment.jump(u, q);
     const Point<dim> displacement =

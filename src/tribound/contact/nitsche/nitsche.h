@@ -105,7 +105,7 @@ class NitscheForm
   [[nodiscard]] const Springs<dim>& springs() const { return springs_; }
   [[nodiscard]] const fem::Constraints& constraints() const { return constraints_; }
   [[nodiscard]] double gamma0() const { return gamma0_; }
-  /// L(phi_i) + (K u_0, phi_i)_S for every degree of freedom, fixed ones included.
+  /// L(phi_i) + (K u_0, phi_i)_S - (sigma_0, grad phi_i) for every degree of freedom, fixed ones included.
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
@@ -132,8 +132,15 @@ class NitscheForm
                                                                std::span<const Point<dim>> n) const;
   /// Vectors at the contact points of a segment.
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
-  /// {sigma(u)} - gamma [u] at the contact points of segment k: P(u) without the gap.
+  /// {C eps(u)} - gamma [u] at the contact points of segment k: P(u) without gap and initial stress.
   [[nodiscard]] Columns traction_without_gap(std::span<const double> u, std::size_t k) const;
+  /// {sigma_0} at the contact points of segment k, interpolated in P^p.
+  [[nodiscard]] Columns initial_traction(std::size_t k) const;
+  /// An upper bound of what the interpolation changes on segment k, stress.
+  [[nodiscard]] double initial_deviation(std::size_t k) const
+  {
+    return initial_deviation_.empty() ? 0 : initial_deviation_[k];
+  }
 
   /// p_w n at the contact points: T + p_w n is the effective traction.
   [[nodiscard]] std::vector<Point<dim>> water_pressure() const;
@@ -168,6 +175,10 @@ class NitscheForm
  private:
   [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
   void look_for_bonds();
+  void find_initial_tractions();
+  /// {sigma_0} at points of segment k, as given or interpolated.
+  [[nodiscard]] std::vector<Point<dim>> initial_tractions(std::size_t k, std::span<const Point<dim - 1>> s,
+                                                          WhichData which) const;
   /// The arguments of the law at a contact point of segment k.
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, int q) const
   {
@@ -226,6 +237,8 @@ class NitscheForm
   SegmentTables<dim> tables_;  ///< at the contact points
   SegmentNodes<dim> nodes_;
   SegmentTables<dim> node_tables_;
+  std::vector<Point<dim>> initial_tractions_;           ///< {sigma_0} at the nodes of all segments; empty: 0
+  std::vector<double> initial_deviation_;               ///< of all segments; empty: 0
   std::shared_ptr<const ContactHistory<dim>> history_;  ///< null: none yet
   bool has_bonds_ = false;                              ///< on any rank
 };

@@ -36,9 +36,10 @@ std::vector<double> residual(const NitscheForm<dim>& form, std::span<const doubl
 template <int dim>
 double load_work(const NitscheForm<dim>& form, std::span<const double> u)
 {
-  std::vector<double> of_springs(u.size(), 0.0);
-  form.springs().add_rest(of_springs);
-  return form.space().dot(form.load(), u) - form.space().dot(of_springs, u);
+  std::vector<double> others(u.size(), 0.0);
+  form.springs().add_rest(others);
+  add_initial_stress<dim>(form.data(), form.space(), others);
+  return form.space().dot(form.load(), u) - form.space().dot(others, u);
 }
 
 template <int dim>

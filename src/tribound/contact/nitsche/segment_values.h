@@ -101,7 +101,7 @@ class SegmentValues
   [[nodiscard]] std::span<const Side> sides() const { return std::span(sides_).first(n_sides_); }
   /// [u] at point q.
   [[nodiscard]] Point<dim> jump(std::span<const double> u, int q) const;
-  /// {sigma(u)} - gamma [u]^n n - gamma_t [u]^t at point q: P(u) without the gap.
+  /// {C eps(u)} - gamma [u]^n n - gamma_t [u]^t at point q: P(u) without gap and initial stress.
   [[nodiscard]] Point<dim> augmented_traction(std::span<const double> u, int q) const;
   /// Its derivative by node i of a side; column b is for component b.
   [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;

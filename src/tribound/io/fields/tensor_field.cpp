@@ -21,6 +21,14 @@ double out_of_plane_ratio(const problem::Material& material)
 }
 
 template <int dim>
+double out_of_plane_rest(const problem::Problem<dim>& problem, int region, const Point<dim>& x)
+{
+  if (dim == 3 || !problem.regions()[region].has_initial_stress()) return 0;
+  return problem.initial_stress_zz(region, x) -
+         out_of_plane_ratio(problem.material(region)) * problem.initial_stress(region, x).trace();
+}
+
+template <int dim>
 std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio)
 {
   const double xy = 0.5 * (s(0, 1) + s(1, 0));
@@ -77,12 +85,17 @@ TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::L
       std::make_shared<const fem::Tabulation<dim>>(space.basis().tabulate(space.basis().node_points()));
   return {"stress", [&problem, &space, u, tabulation](Index cell, std::span<Tensor<dim>> values)
           {
-            const problem::Material& material = problem.material(space.mesh().region(cell));
+            const int region = space.mesh().region(cell);
+            const problem::Material& material = problem.material(region);
             const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
             for (int i = 0; i < tabulation->n_points; ++i)
+            {
               values[i] = contact::sigma<dim>(
                   material, fem::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
                                                   map.inverse_transpose));
+              if (problem.regions()[region].has_initial_stress())
+                values[i] += problem.initial_stress(region, map(space.basis().node_points()[i]));
+            }
           }};
 }
 
@@ -109,6 +122,8 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
           }};
 }
 
+template double out_of_plane_rest(const problem::Problem<2>&, int, const Point<2>&);
+template double out_of_plane_rest(const problem::Problem<3>&, int, const Point<3>&);
 template std::array<double, 6> symmetric_part(const Tensor<2>&, double);
 template std::array<double, 6> symmetric_part(const Tensor<3>&, double);
 template TensorField<2> stress_field(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,

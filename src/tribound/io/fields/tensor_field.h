@@ -33,7 +33,7 @@ template <int dim>
                                                  const fem::LagrangeBasis<dim>& basis, Index cell,
                                                  std::span<const Point<dim>> points);
 
-/// sigma(u_h) as a field. Keeps references to the arguments.
+/// sigma(u_h) as a field, with the initial stress. Keeps references to the arguments.
 template <int dim>
 [[nodiscard]] TensorField<dim> stress_field(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space, std::span<const double> u);
@@ -46,6 +46,10 @@ template <int dim>
 /// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
 /// stress.
 [[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
+
+/// What the initial stress adds to sigma_zz in 2D, sigma_0,zz - ratio (sigma_0,xx + sigma_0,yy); 0 in 3D.
+template <int dim>
+[[nodiscard]] double out_of_plane_rest(const problem::Problem<dim>& problem, int region, const Point<dim>& x);
 
 /// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
 /// in 2D.

@@ -37,7 +37,13 @@ struct Level
     {
       field.at_nodes(c, values);
       const double ratio = out_of_plane_ratio(problem.material(space.mesh().region(c)));
-      for (const int i : order) use(symmetric_part<dim>(values[i], ratio));
+      const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), c);
+      for (const int i : order)
+      {
+        std::array<double, 6> sigma = symmetric_part<dim>(values[i], ratio);
+        sigma[2] += out_of_plane_rest(problem, space.mesh().region(c), map(space.basis().node_points()[i]));
+        use(sigma);
+      }
     }
   }
 

@@ -52,8 +52,8 @@ struct LevelFiles
 /// Writes the own cells of degree p, each with its own points: points and `displacement` (3 components, z = 0
 /// in 2D) in double precision, `stress` and the further `tensors` (xx, yy, zz, xy, yz, xz),
 /// `principal_stresses` and `von_mises` in single precision; cell data `region` and `cell_fields`. In 2D zz
-/// of every tensor follows from out_of_plane_ratio(). Needs memory for one cell besides its arguments. Throws
-/// WriteError when the file cannot be written.
+/// of every tensor follows from out_of_plane_ratio() and out_of_plane_rest(). Needs memory for one cell
+/// besides its arguments. Throws WriteError when the file cannot be written.
 template <int dim>
 void write_level_vtu(const LevelFiles& files, const SeriesPlace& place, const problem::Problem<dim>& problem,
                      const fem::LagrangeSpace<dim>& space, std::span<const double> u,

@@ -111,7 +111,10 @@ std::string describe(const problem::Material& material, int dimension, const pro
   const auto [E, nu] = doctor::elastic_constants(material, dimension);
   const bool plane_stress = material.plane == problem::PlaneModel::stress;
   const char* model = dimension == 3 ? "" : plane_stress ? ", plane stress" : ", plane strain";
-  return fmt::format("E = {:.6g}{}, nu = {:.6g}{}", E, units.behind(UnitOf::stress, dimension), nu, model);
+  const std::string expansion =
+      material.expansion == 0 ? "" : fmt::format(", alpha = {:.6g}", material.expansion);
+  return fmt::format("E = {:.6g}{}, nu = {:.6g}{}{}", E, units.behind(UnitOf::stress, dimension), nu,
+                     expansion, model);
 }
 
 template <int dim>

@@ -184,6 +184,7 @@ std::vector<CellValue<dim>> cell_values(const contact::NitscheForm<dim>& form,
                           const Point<dim> u = fem::value_at<dim>(space.cell_nodes(c), level.u,
                                                                   space.basis().tabulate(at).values_at(0));
                           const double ratio = out_of_plane_ratio(form.problem().material(mesh.region(c)));
+                          const double rest = out_of_plane_rest(form.problem(), mesh.region(c), points.x[k]);
                           const Tensor<dim> sigma = values_at<dim>(stress, space.basis(), c, at)[0];
                           CellValue<dim>& value = values.emplace_back(CellValue<dim>{points.places[k].probe,
                                                                                      points.places[k].point,
@@ -195,9 +196,11 @@ std::vector<CellValue<dim>> cell_values(const contact::NitscheForm<dim>& form,
                                                                                      0});
                           std::ranges::copy(u, value.u.begin());
                           value.stress = symmetric_part<dim>(sigma, ratio);
+                          value.stress[2] += rest;
                           if (!has_bound) return;
                           const Tensor<dim> sigma_h = values_at<dim>(equilibrated, space.basis(), c, at)[0];
                           value.equilibrated = symmetric_part<dim>(sigma_h, ratio);
+                          value.equilibrated[2] += rest;
                           value.difference = (sigma - sigma_h).norm();
                         });
   return values;

@@ -1,0 +1,85 @@
+#pragma once
+
+/// @file initial_stress.h
+/// The initial stress sigma_0 as the discrete problem on a mesh sees it, method section 16.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tribound/contact/nitsche/datum.h"
+#include "tribound/contact/nitsche/segment.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/problem/problem.h"
+
+namespace tribound::contact
+{
+
+/// sigma_0 in a region, by sums of squares: entries that stand twice in the tensor are multiplied by 2^{1/2}.
+template <int dim>
+[[nodiscard]] Datum<dim, problem::n_symmetric<dim>> initial_stress_datum(const problem::Problem<dim>& problem,
+                                                                         int region);
+
+/// What is lost when sigma_0 is replaced by its projection on P^p on a cell.
+struct StressRemainder
+{
+  double oscillation = 0;  ///< >= ||sigma_0 - Pi^p sigma_0||, Pi^p with the moments by rules
+  double projection = 0;   ///< >= the distance of Pi^p by rules from the exact one; 0 for polynomials
+
+  /// An upper bound of ||q - sigma_0 + Pi^p sigma_0|| for a q in P^p of this norm. Exact moments leave what
+  /// is orthogonal to q.
+  [[nodiscard]] double added_to(double norm) const;
+};
+
+/// The moments of sigma_0 against P^{p+1} on every cell: form, patches and estimators see no others.
+template <int dim>
+class InitialStress
+{
+ public:
+  /// Formulas that are not polynomials of degree p + 2 are subdivided until a cell T leaves out about
+  /// density |T|^{1/2}, into max_parts parts at most. Keeps references.
+  InitialStress(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree, double density,
+                int max_parts);
+
+  [[nodiscard]] bool acts_on(Index cell) const
+  {
+    return !of_region_.empty() && acts_[mesh_->region(cell)] != 0;
+  }
+  /// The coefficients of Pi^{p+1} sigma_0 in fem::orthonormal_values on the reference simplex; those that are
+  /// missing at the end are 0. Empty where it does not act.
+  [[nodiscard]] std::span<const Tensor<dim>> coefficients(Index cell) const;
+  [[nodiscard]] StressRemainder remainder(Index cell) const
+  {
+    return remainders_.empty() ? StressRemainder{} : remainders_[cell];
+  }
+  /// How many own cells were subdivided, and the number of their parts.
+  [[nodiscard]] std::int64_t subdivided() const { return subdivided_; }
+  [[nodiscard]] std::int64_t parts() const { return parts_; }
+
+ private:
+  void represent_constants();
+  void represent(int degree, double density, int max_parts);
+
+  const problem::Problem<dim>* problem_;
+  const mesh::Mesh<dim>* mesh_;
+  std::vector<char> acts_;                           ///< in the regions
+  std::vector<std::vector<Tensor<dim>>> of_region_;  ///< where it is constant; no regions: it acts nowhere
+  std::vector<std::vector<Tensor<dim>>> of_cell_;    ///< where it varies; empty: it does so nowhere
+  std::vector<StressRemainder> remainders_;          ///< empty: all 0
+  std::int64_t subdivided_ = 0;
+  std::int64_t parts_ = 0;
+};
+
+/// {sigma_0} at the point of a segment with coordinates s.
+template <int dim>
+[[nodiscard]] Point<dim> initial_traction(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                          const ContactSegment<dim>& segment, const Point<dim - 1>& s);
+
+/// An upper bound of the largest |{sigma_0} - I {sigma_0}| on a segment, I the interpolation at the nodes of
+/// P^p, from enclosures; functions that have none count as 0. Throws InputError for a formula without bound.
+template <int dim>
+[[nodiscard]] double initial_traction_deviation(const problem::Problem<dim>& problem,
+                                                const mesh::Mesh<dim>& mesh,
+                                                const ContactSegment<dim>& segment, int degree);
+
+}  // namespace tribound::contact

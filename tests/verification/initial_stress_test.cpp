@@ -1,0 +1,252 @@
+/// @file initial_stress_test.cpp
+/// Temperature and initial stress: free expansion without stress, constrained bars, the numbers of an
+/// independent program, bounds above the dual norm.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/discrete_problem.h"
+#include "support/meshes.h"
+#include "tribound/adapt/error_bars.h"
+#include "tribound/certify/bound/balance.h"
+#include "tribound/certify/bound/estimate.h"
+#include "tribound/certify/equilibrate/equilibrate.h"
+#include "tribound/certify/truth/true_error.h"
+#include "verification/energy_effectivity.h"
+#include "verification/loads_reference.h"
+#include "verification/random_quantities.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// A region that is all of block().
+template <int dim>
+problem::Region<dim> heated(problem::Material material, double alpha, problem::Field temperature,
+                            problem::Field reference = 0.0)
+{
+  material.expansion = alpha;
+  problem::Region<dim> region{.name = "box", .material = material};
+  region.temperature = std::move(temperature);
+  region.reference_temperature = std::move(reference);
+  return region;
+}
+
+problem::BoundaryCondition<2> slider(const std::string& name, const problem::Field& prescribed)
+{
+  return obstacle<2>(name, problem::Slider(), prescribed);
+}
+
+problem::BoundaryCondition<2> on_springs(const std::string& name, double normal, double tangential)
+{
+  problem::BoundaryCondition<2> condition;
+  condition.name = name;
+  condition.spring = problem::Spring<2>{normal, tangential};
+  return condition;
+}
+
+TEST(InitialStress, AgreesWithThePrototype)
+{
+  const problem::Region<2> region = heated<2>(lame(1, 0.3), 0.02, formula("1 + x*y"));
+  expect_reference("thermal",
+                   {.boundaries = {clamped<2>("left"), loaded<2>("right", 0.04, 0.06),
+                                   loaded<2>("top", 0.0, -0.1), obstacle<2>("bottom", problem::Coulomb(0.5))},
+                    .regions = {region}});
+  expect_reference("everything", {.boundaries = {on_springs("left", 2, 1), loaded<2>("right", 0.04, 0.06),
+                                                 slider("top", formula("-0.03 + 0.01*x")),
+                                                 obstacle<2>("bottom", problem::Coulomb(0.5))},
+                                  .regions = {region}});
+}
+
+/// The free expansion of a body with alpha theta = a + b . x, in 3D and plane stress: eps = alpha theta I,
+/// u_i = (a + b . x) x_i - b_i |x|^2 / 2. In plane strain alpha is (1 + nu) times as large in the plane.
+template <int dim>
+Point<dim> expansion(double a, const Point<dim>& b, const Point<dim>& x)
+{
+  return (a + b.dot(x)) * x - x.squaredNorm() / 2 * b;
+}
+
+template <int dim>
+void expect_free(problem::PlaneModel plane, int p)
+{
+  const double nu = 0.3;
+  const double alpha = 1e-3;
+  const Point<dim> b = p == 1 ? Point<dim>(Point<dim>::Zero()) : Point<dim>(Point<dim>::LinSpaced(0.7, -0.4));
+  const std::string theta = fmt::format("20 + 2 + {}*x + {}*y{}", b[0], b[1],
+                                        dim == 3 ? fmt::format(" + {}*z", b[dim - 1]) : std::string());
+  ProblemData<dim> data{.boundaries = {}};
+  data.regions = {heated<dim>(lame(2.0, nu, plane), alpha, formula(theta), 20.0)};
+  const double in_plane = dim == 2 && plane == problem::PlaneModel::strain ? 1 + nu : 1;
+  // the values of the exact solution in two components on the left, of all in 3D, hold the body
+  const auto component = [&](int i)
+  {
+    const auto value = [=](std::span<const double> x, int, std::span<double> values)
+    {
+      for (std::size_t q = 0; q < values.size(); ++q)
+        values[q] = expansion<dim>(2 * alpha * in_plane, alpha * in_plane * b,
+                                   Eigen::Map<const Point<dim>>(&x[dim * q]))[i];
+    };
+    return problem::Field(problem::FieldFunction{.values = value, .degree = 2});
+  };
+  data.boundaries = {problem::with_displacement<dim>(
+      "left",
+      components<dim, std::optional<problem::Field>>(component(0), component(1), component(dim - 1)))};
+  const DiscreteProblem<dim> c(renumbered(block<dim>({2, 2}, {1, 1, 1}), 3), data,
+                               {.degree = p, .newton = {.tolerance = 1e-13}});
+  const solve::NewtonResult<dim> solved = c.solve();
+  const std::vector<Point<dim>> nodes = c.space.node_points();
+  double error = 0;
+  for (Index i = 0; i < c.space.n_nodes(); ++i)
+    error = std::max(error, (Point<dim>(&solved.u[dim * i]) -
+                             expansion<dim>(2 * alpha * in_plane, alpha * in_plane * b, nodes[i]))
+                                .norm());
+  EXPECT_LE(error, 1e-14);
+  const contact::StressNorms norms = contact::stress_norms<dim>(c.problem, c.space, solved.u);
+  EXPECT_LE(norms.sigma, 1e-15);
+  const auto stress = certify::equilibrate<dim>(c.form, solved.u, solved.traction);
+  const certify::Estimate bound = certify::estimate<dim>(c.form, solved.u, stress);
+  EXPECT_LE(bound.total_sharp, 2e-15);
+}
+
+TEST(InitialStress, FreeExpansionHasNoStress)
+{
+  for (int p = 1; p <= 4; ++p)
+  {
+    SCOPED_TRACE(p);
+    expect_free<2>(problem::PlaneModel::strain, p);
+    expect_free<2>(problem::PlaneModel::stress, p);
+    if (p <= 3) expect_free<3>(problem::PlaneModel::strain, p);
+  }
+}
+
+/// A bar between walls, free to the sides: sigma_xx = -E alpha theta in 3D and plane stress; in plane strain
+/// divided by 1 - nu. Alternatively under an initial stress xx = -s, which only walls can bear.
+template <int dim>
+void expect_constrained(problem::PlaneModel plane, bool is_heated)
+{
+  const double E = 2;
+  const double nu = 0.3;
+  ProblemData<dim> data;
+  data.regions = {heated<dim>(lame(E, nu, plane), is_heated ? 1e-3 : 0, 7.0, 2.0)};
+  if (!is_heated) data.regions[0].initial_stress[0] = -0.01;
+  const double expected =
+      is_heated ? -E * 1e-3 * 5 / (dim == 2 && plane == problem::PlaneModel::strain ? 1 - nu : 1) : -0.01;
+  data.boundaries = {obstacle<dim>("left"), fixed<dim>("right", 0.0, free, free),
+                     fixed<dim>("bottom", free, 0.0, free)};
+  if (dim == 3) data.boundaries.push_back(fixed<dim>("back", free, free, 0.0));
+  const DiscreteProblem<dim> c(renumbered(block<dim>({2, 2}, {2, 1, 1}), 3), data,
+                               {.degree = 2, .newton = {.tolerance = 1e-13}});
+  const solve::NewtonResult<dim> solved = c.solve();
+  for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+    for (const contact::ContactState<dim>& state : c.form.contact_states(solved.u, k))
+      EXPECT_NEAR(state.pressure, -expected, 1e-12);
+  const contact::StressNorms norms = contact::stress_norms<dim>(c.problem, c.space, solved.u);
+  EXPECT_NEAR(norms.sigma, -expected * std::sqrt(2.0), 1e-12);  // the volume is 2
+  const certify::Balance balance =
+      certify::balance<dim>(c.form, solved.u, solved.traction, Point<dim>::Zero());
+  EXPECT_NEAR(balance.rows.back().force[0], 0, 1e-12);
+}
+
+TEST(InitialStress, BearsAgainstWalls)
+{
+  for (const bool is_heated : {true, false})
+  {
+    expect_constrained<2>(problem::PlaneModel::strain, is_heated);
+    expect_constrained<2>(problem::PlaneModel::stress, is_heated);
+    expect_constrained<3>(problem::PlaneModel::strain, is_heated);
+  }
+}
+
+/// A temperature that is a polynomial of any degree, oscillates, jumps or is steep, and initial stresses.
+template <int dim>
+problem::Region<dim> random_region(RandomCase<dim>& random, const problem::Material& material)
+{
+  const double size = random.between(-0.1, 0.1);
+  const std::array<std::string, 6> fields = {"x",        "x*y - y^2",          "x^3*y - x",
+                                             "sin(4*x)", "x < 0.613 ? y : -1", "exp(2*y)*cos(x)"};
+  problem::Region<dim> region = heated<dim>(
+      material, 0.1, formula(fmt::format("{}*({})", 10 * size, fields[random.random() % fields.size()])));
+  for (problem::Field& entry : region.initial_stress)
+    if (random.happens(2))
+      entry = formula(fmt::format("{}*({})", size, fields[random.random() % fields.size()]));
+  return region;
+}
+
+/// The bounds of both stresses at an early and at the last iterate.
+template <int dim>
+void expect_bounded(unsigned seed, int p)
+{
+  RandomCase<dim> random{std::mt19937(seed)};
+  random.is_on_another = random.happens(3);
+  random.matches = random.happens(2);
+  ProblemData<dim> data = random.data();
+  data.regions = {random_region(random, data.material)};
+  DiscreteProblem<dim> c(random.mesh(), data, {.degree = p, .newton = {.tolerance = 1e-11}});
+  certify::DualNorm<dim> dual_norm(c.form, {.refinements = 2, .degree = p + 2});
+  for (const int steps : {1, c.method.newton.max_steps})
+  {
+    c.method.newton.max_steps = steps;
+    const solve::NewtonResult<dim> newton = c.solve();
+    const double below = dual_norm(newton.u);
+    for (const certify::PatchStress kind : {certify::PatchStress::rows, certify::PatchStress::afw})
+    {
+      const certify::Estimate eta = certify::estimate<dim>(
+          c.form, newton.u, certify::equilibrate<dim>(c.form, newton.u, newton.traction, 0, 0, kind));
+      EXPECT_GE(eta.total_sharp, below) << dim << "D, seed " << seed << ", p = " << p;
+      fmt::print("{}D, seed {}, p = {}, step {}: {:.3f}\n", dim, seed, p, newton.steps.size(),
+                 eta.total_sharp / below);
+    }
+  }
+}
+
+TEST(InitialStress, NoBoundFails)
+{
+  for (unsigned seed = 0; seed < n_cases(24); ++seed) expect_bounded<2>(seed, 1 + static_cast<int>(seed % 4));
+  for (unsigned seed = 0; seed < n_cases(4); ++seed) expect_bounded<3>(seed, 1 + static_cast<int>(seed % 2));
+}
+
+/// The energy bound against the distance from a much richer solution.
+template <int dim>
+void expect_energy_bounded(unsigned seed, int p)
+{
+  RandomCase<dim> random{std::mt19937(seed)};
+  random.is_on_another = random.happens(4);
+  ProblemData<dim> data = random.data();
+  const mesh::MeshData<dim> mesh = random.mesh();
+  data.regions = {random_region(random, data.material)};
+  data.regions[0].name = mesh.region_names.front();
+  const DiscreteProblem<dim> c(mesh, data, {.degree = p, .newton = {.tolerance = 1e-12}});
+  const std::vector<double> u = c.solve().u;
+  const certify::EnergyBound bound = adapt::energy_bound<dim>(c.form, c.method, u, {{.name = "energy"}});
+  if (!bound.reason.empty())
+  {
+    fmt::print("{}D, seed {}, p = {}: {}\n", dim, seed, p, bound.reason);
+    return;
+  }
+  EXPECT_EQ(bound.quantities[0].reason, "a region has an initial stress or a temperature");
+  const certify::RicherSpace richer{.refinements = dim == 2 ? 2 : 1, .degree = std::min(p + 2, 4)};
+  const double found = effectivity<dim>(RicherReference<dim>(c, richer), u, bound);
+  fmt::print("{}D, seed {}, p = {}: {:.3f}\n", dim, seed, p, found);
+  EXPECT_GE(found, 1) << seed;
+}
+
+TEST(InitialStress, NoEnergyBoundFails)
+{
+  for (unsigned seed = 0; seed < n_cases(16); ++seed)
+    expect_energy_bounded<2>(seed, 1 + static_cast<int>(seed % 3));
+  for (unsigned seed = 0; seed < n_cases(3); ++seed)
+    expect_energy_bounded<3>(seed, 1 + static_cast<int>(seed % 2));
+}
+
+}  // namespace
+
+}  // namespace tribound::test
