@@ -34,15 +34,20 @@ struct MaterialConfig
   double E = 0.0;   ///< Young's modulus, stress units, > 0
   double nu = 0.0;  ///< Poisson's ratio in (-1, 0.5)
   problem::PlaneModel plane = problem::PlaneModel::strain;
+  std::optional<double> alpha{};  ///< strain per temperature
   Where where;
 };
 
-/// Body force of a region; an empty name means every region without its own entry.
+/// Body force, temperature and initial stress of a region; an empty name means every region without its own
+/// entry.
 struct LoadConfig
 {
   std::string region;
-  std::vector<problem::Field> body;  ///< force per volume, dim components
-  Where where;
+  std::vector<problem::Field> body;  ///< force per volume, dim components; empty: none
+  std::optional<problem::Field> temperature{};
+  problem::Field reference_temperature{};
+  std::vector<problem::Field> initial_stress{};  ///< xx, yy, xy or xx, yy, zz, xy, yz, xz; empty: none
+  Where where;                                   ///< of the table
 };
 
 /// `spring` of a boundary.

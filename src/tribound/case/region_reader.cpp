@@ -1,5 +1,6 @@
 #include "tribound/case/region_reader.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace tribound::case_file
@@ -19,7 +20,9 @@ const Options<MaterialConfig>& material_options()
                       number_in({.lower = -1.0, .upper = 0.5},
                                 "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5"),
                       "Poisson's ratio in (-1, 0.5): nu = 0.3"),
-       option<&M::plane>("plane", one_of({"strain", "stress"}))});
+       option<&M::plane>("plane", one_of({"strain", "stress"})),
+       option<&M::alpha>("alpha",
+                         number_in({.includes_lower = true}, "strain per degree, such as 12e-6 for steel"))});
   return options;
 }
 
@@ -35,14 +38,25 @@ MaterialConfig read_material(const TableReader& table, std::string region, probl
 const Options<LoadConfig>& load_options()
 {
   static const Options<LoadConfig> options(
-      "load", {option<&LoadConfig::body>("body", data(), "force per volume: body = [0, -9.81]")});
+      "load",
+      {option<&LoadConfig::body>("body", data()), option<&LoadConfig::temperature>("temperature", datum()),
+       option<&LoadConfig::reference_temperature>("reference_temperature", datum()),
+       option<&LoadConfig::initial_stress>(
+           "initial_stress", array_of(datum(), 3,
+                                      "the entries of a symmetric tensor: [xx, yy, xy], in 3D [xx, yy, zz, "
+                                      "xy, yz, xz]"))});
   return options;
 }
 
 LoadConfig read_load(const TableReader& table, std::string region)
 {
-  LoadConfig load{.region = std::move(region), .body = {}, .where = table.require("body").where};
+  LoadConfig load{.region = std::move(region), .body = {}, .where = table.where()};
   load_options().read(table, load);
+  if (table.has("reference_temperature"))
+    (void)table.require("temperature", "the temperature that is to be compared with it");
+  if (load.body.empty() && !load.temperature && load.initial_stress.empty())
+    throw InputError(table.where(), "gives no load",
+                     "a force per volume, body = [0, -9.81], a temperature or an initial_stress");
   return load;
 }
 
@@ -85,7 +99,8 @@ std::vector<LoadConfig> read_loads(const Node& node)
 {
   const TableReader table(node, load_table());
   std::vector<LoadConfig> loads;
-  if (table.has("body")) loads.push_back(read_load(table, {}));
+  const auto is_given = [&table](const Key& key) { return table.has(key.name); };
+  if (std::ranges::any_of(load_options().table().keys, is_given)) loads.push_back(read_load(table, {}));
   for (const Entry* entry : table.named())
     loads.push_back(read_load(TableReader(entry->node, load_options().table()), entry->name));
   return loads;

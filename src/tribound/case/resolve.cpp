@@ -98,11 +98,45 @@ std::vector<const T*> by_region(const std::vector<T>& entries, std::span<const s
   return found;
 }
 
-/// E and nu of the case, for each region of the mesh.
+/// The entries of the initial stress; in plane strain zz may follow.
+template <int dim>
+void set_initial_stress(const LoadConfig& load, problem::PlaneModel plane, problem::Region<dim>& region)
+{
+  constexpr auto n = static_cast<std::size_t>(problem::n_symmetric<dim>);
+  const std::vector<problem::Field>& given = load.initial_stress;
+  const Where where = inside(load.where, "initial_stress");
+  if (dim == 2 && given.size() == n + 1 && plane == problem::PlaneModel::stress)
+    throw InputError(where, "has an entry zz beside plane = \"stress\", where sigma_zz is 0",
+                     "three entries: [xx, yy, xy]");
+  if (given.size() != n && !(dim == 2 && given.size() == n + 1))
+    throw InputError(where, fmt::format("has {} entries in a case in {}D", given.size(), dim),
+                     dim == 2 ? "three entries, [xx, yy, xy], in plane strain also [xx, yy, xy, zz]"
+                              : "six entries: [xx, yy, zz, xy, yz, xz]");
+  for (std::size_t i = 0; i < n; ++i) region.initial_stress[i] = in_dimension<dim>(given[i]);
+  if (given.size() > n) region.initial_stress_zz = in_dimension<dim>(given[n]);
+}
+
+/// Sets what the case gives beside body forces.
+template <int dim>
+void set_thermal(const MaterialConfig& material, const LoadConfig& load, problem::Region<dim>& region)
+{
+  if (!load.initial_stress.empty()) set_initial_stress<dim>(load, material.plane, region);
+  if (!load.temperature) return;
+  if (!material.alpha)
+    throw InputError(
+        inside(load.where, "temperature"),
+        fmt::format("the material of region \"{}\" has no alpha, by which it expands", region.name),
+        "material.alpha, the strain per degree, such as 12e-6; 0 for none");
+  region.temperature = in_dimension<dim>(*load.temperature);
+  region.reference_temperature = in_dimension<dim>(load.reference_temperature);
+}
+
+/// Materials and loads of the case, for each region of the mesh.
 template <int dim>
 std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<const std::string> names)
 {
-  for (const LoadConfig& load : config.loads) (void)vector_of<dim>(load.body, load.where);
+  for (const LoadConfig& load : config.loads)
+    if (!load.body.empty()) (void)vector_of<dim>(load.body, inside(load.where, "body"));
   const auto materials = by_region(config.materials, names);
   const auto loads = by_region(config.loads, names);
   std::vector<problem::Region<dim>> regions;
@@ -119,7 +153,11 @@ std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<con
     problem::Region<dim>& region = regions.emplace_back();
     region.name = names[r];
     region.material = problem::lame(materials[r]->E, materials[r]->nu, materials[r]->plane);
-    if (loads[r] != nullptr) region.body_force = vector_of<dim>(loads[r]->body, loads[r]->where);
+    region.material.expansion = materials[r]->alpha.value_or(0);
+    if (loads[r] == nullptr) continue;
+    if (!loads[r]->body.empty())
+      region.body_force = vector_of<dim>(loads[r]->body, inside(loads[r]->where, "body"));
+    set_thermal<dim>(*materials[r], *loads[r], region);
   }
   return regions;
 }

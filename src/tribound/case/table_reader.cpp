@@ -205,7 +205,11 @@ std::span<const Node> to_items(const Node& node, const Value& value)
     return {&node, 1};
   }
   if (array == nullptr || array->size() > value.most || (array->size() < value.least && value.least > 1))
-    fail_type(node, value.least > 1 ? "an array of 2 or 3" : "an array", value.hint);
+    fail_type(node,
+              value.least < 2   ? "an array"
+              : value.most == 3 ? "an array of 2 or 3"
+                                : fmt::format("an array of {} or more", value.least),
+              value.hint);
   if (array->size() < value.least) throw InputError(node.where, "is empty", value.hint);
   return *array;
 }

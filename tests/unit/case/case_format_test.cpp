@@ -59,6 +59,7 @@ std::vector<std::string> companions(const Row& row)
   if (row.key == "threshold") return {row.table + ".friction=tresca"};
   if (row.key == "reference_degree") return {"degree=1"};
   if (row.name() == "obstacle.o.translate") return {"obstacle.o.distance=\"y\""};
+  if (row.key == "reference_temperature") return {"load.temperature=1"};
   if (row.key == "side") return {row.table + ".surface=a.stl"};
   if (row.name() == "shape.o.translate") return {"shape.o.circle={centre=[0,0],radius=1}"};
   if (row.key == "damage_step")
@@ -204,6 +205,12 @@ void try_out(const Row& row)
     expect_refused(row, "[]");
     expect_refused(row, "1");
   }
+  else if (row.type == "array of data")
+  {
+    expect_accepted(row, "[0, \"x\", -1]");
+    expect_refused(row, "[1, 2]");
+    expect_refused(row, "1");
+  }
   else if (row.type == "table")
     expect_refused(row, "1");
   else if (row.type.starts_with("name"))
@@ -286,7 +293,15 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"degree", [](const case_file::Config& c, const Row&) { return std::to_string(c.method.degree); }},
       {"material.plane", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.materials[0].plane)); }},
+      {"material.alpha",
+       [](const case_file::Config& c, const Row&) { return c.materials[0].alpha ? "given" : "none"; }},
       {"load.body",
+       [](const case_file::Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
+      {"load.temperature",
+       [](const case_file::Config& c, const Row&) { return c.loads.empty() ? "none" : "given"; }},
+      {"load.reference_temperature", [](const case_file::Config&, const Row&)
+       { return case_file::LoadConfig().reference_temperature.is_zero() ? "0" : "not 0"; }},
+      {"load.initial_stress",
        [](const case_file::Config& c, const Row&) { return c.loads.empty() ? "zero" : "given"; }},
       {"boundary.top.contact.friction", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.boundaries[0].contact->law.index())); }},

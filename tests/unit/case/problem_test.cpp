@@ -99,6 +99,35 @@ TEST(Lame, PlaneStressGivesYoungsModulusInUniaxialTension)
   EXPECT_NEAR(lambda * (1 - nu) - 2 * mu * nu, 0.0, 1e-14);
 }
 
+/// What stops the expansion in the plane: E alpha / (1 - 2 nu), in plane stress E alpha / (1 - nu).
+TEST(ThermalModulus, IsThatOfConstrainedBodies)
+{
+  problem::Material material = problem::lame(2.1, 0.3, problem::PlaneModel::strain);
+  material.expansion = 1e-3;
+  EXPECT_NEAR(problem::thermal_modulus(material), 2.1e-3 / 0.4, 1e-16);
+  material = problem::lame(2.1, 0.3, problem::PlaneModel::stress);
+  material.expansion = 1e-3;
+  EXPECT_NEAR(problem::thermal_modulus(material), 2.1e-3 / 0.7, 1e-16);
+}
+
+/// Loads of regions, with t: what a case gives is what the problem has.
+TEST(InitialStress, OfACase)
+{
+  const std::string text =
+      "mesh.file = 'a.msh'\n[material]\nE = 1\nnu = 0.25\nalpha = 0.1\n"
+      "[load.hot]\ntemperature = '20*t + x'\nreference_temperature = 10\ninitial_stress = [1, 'y', 3, 4]\n"
+      "[boundary.a]\ndisplacement = [0, 0]\n";
+  const problem::Problem<2> p = problem(text, {"hot", "cold"}, {"a"}).at(2);
+  Tensor<2> expected;
+  const double beta = 0.1 / (1 - 2 * 0.25);
+  expected << 1 - beta * 31, 3, 3, 7 - beta * 31;
+  EXPECT_TRUE(p.initial_stress(0, {1, 7}).isApprox(expected, 1e-14));
+  EXPECT_NEAR(p.initial_stress_zz(0, {1, 7}), 4 - beta * 31, 1e-13);
+  EXPECT_TRUE(p.regions()[0].has_initial_stress());
+  EXPECT_FALSE(p.regions()[1].has_initial_stress());
+  EXPECT_FALSE(p.without_initial_stress().has_initial_stress());
+}
+
 constexpr auto complete = R"toml(
 [mesh]
 file = "a.msh"
@@ -201,7 +230,7 @@ TEST(BadProblem, NamesAreThoseOfTheMesh)
                         "  hint: did you mean \"steel\"? it has \"rubber\", \"steel\""));
   EXPECT_THAT(
       message(file_head + "[load.concrete]\nbody = [0, 1]\n"),
-      HasSubstr("load.concrete.body: the mesh has no region \"concrete\"\n  hint: it has \"rubber\""));
+      HasSubstr("load.concrete: the mesh has no region \"concrete\"\n  hint: it has \"rubber\""));
   EXPECT_THAT(message(file_head + all, regions, {}), HasSubstr("hint: it has none"));
 }
 
