@@ -228,9 +228,8 @@ TEST(BadProblem, NamesAreThoseOfTheMesh)
   EXPECT_THAT(message(file_head + "[material.stele]\nE = 1\nnu = 0\n"),
               HasSubstr("material.stele: the mesh has no region \"stele\"\n"
                         "  hint: did you mean \"steel\"? it has \"rubber\", \"steel\""));
-  EXPECT_THAT(
-      message(file_head + "[load.concrete]\nbody = [0, 1]\n"),
-      HasSubstr("load.concrete: the mesh has no region \"concrete\"\n  hint: it has \"rubber\""));
+  EXPECT_THAT(message(file_head + "[load.concrete]\nbody = [0, 1]\n"),
+              HasSubstr("load.concrete: the mesh has no region \"concrete\"\n  hint: it has \"rubber\""));
   EXPECT_THAT(message(file_head + all, regions, {}), HasSubstr("hint: it has none"));
 }
 
