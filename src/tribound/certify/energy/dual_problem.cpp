@@ -48,12 +48,14 @@ double DualProblem<dim>::oscillation(std::span<const double> z) const
 namespace
 {
 
-/// The problem with u_D = 0 and without contact, with further changes of its boundaries and regions.
+/// The problem with u_D = 0, without contact and initial stress, with further changes of its boundaries and
+/// regions.
 template <int dim, class ChangeBoundary, class ChangeRegion>
 problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                               const ChangeBoundary& change_boundary, const ChangeRegion& change_region)
 {
-  std::vector<problem::Region<dim>> regions(problem.regions().begin(), problem.regions().end());
+  const problem::Problem<dim> elastic = problem.without_initial_stress();
+  std::vector<problem::Region<dim>> regions(elastic.regions().begin(), elastic.regions().end());
   for (problem::Region<dim>& region : regions) change_region(region);
   std::vector<problem::BoundaryCondition<dim>> boundaries(problem.boundaries().begin(),
                                                           problem.boundaries().end());

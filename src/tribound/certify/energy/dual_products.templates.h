@@ -11,6 +11,7 @@
 #include "tribound/certify/energy/admissible_stress.h"
 #include "tribound/certify/energy/dual_products.h"
 #include "tribound/certify/equilibrate/cell_operator.h"
+#include "tribound/certify/equilibrate/initial_moments.h"
 
 namespace tribound::certify
 {
@@ -24,7 +25,7 @@ class DualCell
 {
  public:
   DualCell(const contact::NitscheForm<dim>& form, const Stress<dim>& stress, std::span<const double> v)
-      : form_(form), stress_(stress), v_(v)
+      : form_(form), initial_(form), stress_(stress), v_(v)
   {
   }
 
@@ -33,8 +34,9 @@ class DualCell
     cell_ = cell;
     sorted_ = make_sorted_cell(form_.space().mesh(), cell);
     material_ = &form_.problem().material(form_.space().mesh().region(cell));
-    error_ = solver_.solve(sorted_, *material_, stress_.dis_in(cell), sigma(v_)).difference;
-    tau_ = on_pieces<dim, q>(sigma(v_));
+    const StressCoefficients<dim, q> of_v = initial_.total(cell, sorted_, elastic(v_));
+    error_ = solver_.solve(sorted_, *material_, stress_.dis_in(cell), of_v).difference;
+    tau_ = on_pieces<dim, q>(of_v);
     add_multiple(tau_, 1, error_);
   }
 
@@ -42,13 +44,13 @@ class DualCell
   [[nodiscard]] double add(const DualPair<dim>& pair, DualProducts& products)
   {
     double unbalanced = 0;
-    const PiecewiseStress<dim, q> of_z = on_pieces<dim, q>(sigma(pair.z));
+    const PiecewiseStress<dim, q> of_z = on_pieces<dim, q>(elastic(pair.z));
     PiecewiseStress<dim, q> zeta;
     if (pair.stress)
     {
       const std::span<const double> sigma_h = pair.stress->dis_in(cell_);
-      const auto nearest = solver_.solve(sorted_, *material_, sigma_h, sigma(pair.target));
-      zeta = on_pieces<dim, q>(sigma(pair.target));
+      const auto nearest = solver_.solve(sorted_, *material_, sigma_h, elastic(pair.target));
+      zeta = on_pieces<dim, q>(elastic(pair.target));
       add_multiple(zeta, 1, nearest.difference);
       if (const double size = norm(sigma_h); size > 0) unbalanced = nearest.unbalanced / size;
     }
@@ -63,19 +65,21 @@ class DualCell
   }
 
  private:
-  [[nodiscard]] auto sigma(std::span<const double> w) const
+  /// C eps(w): dual problems have no initial stress.
+  [[nodiscard]] auto elastic(std::span<const double> w) const
   {
     return discrete_stress<dim, q>(sorted_, *material_, form_.space().cell_nodes(cell_), w);
   }
 
   const contact::NitscheForm<dim>& form_;
+  InitialMoments<dim, q> initial_;
   const Stress<dim>& stress_;
   std::span<const double> v_;
   AdmissibleStressSolver<dim, q> solver_;
   Index cell_ = 0;
   SortedCell<dim> sorted_{};
   const problem::Material* material_ = nullptr;
-  PiecewiseStress<dim, q> error_;  ///< tau - sigma(v)
+  PiecewiseStress<dim, q> error_;  ///< tau - sigma(v), total stresses
   PiecewiseStress<dim, q> tau_;
 };
 

@@ -109,21 +109,15 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   if (!quantities.empty()) quantities_ = std::make_unique<QuantityBounds<dim>>(form, quantities);
   if (!reason_.empty()) return;
   if (!korn) korn = korn_constant(form.problem(), form.space().mesh());
-  parts_ = std::make_unique<Parts>(form, solver, has_intervals(), *korn, patches);
+  parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (std::string why = parts_->form.springs().why_unclear(); !why.empty()) reason_ = std::move(why);
-  if (reason_.empty() && has_intervals())
+  if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
 
 template <int dim>
 EnergyEstimator<dim>::~EnergyEstimator() = default;
-
-template <int dim>
-bool EnergyEstimator<dim>::has_intervals() const
-{
-  return quantities_ != nullptr && !form_.problem().has_initial_stress();
-}
 
 namespace
 {
@@ -193,14 +187,12 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   std::vector<QuantityInterval> intervals;
   const auto use = [&](const BoundedState<dim>& state)
   {
-    if (!has_intervals()) return;
+    if (!quantities_) return;
     intervals = quantities_->from_equilibrium(u, {});
     quantities_->add_bounded(state, intervals);
   };
   EnergyBound result = reason_.empty() ? bound(u, use) : EnergyBound{.reason = reason_};
-  if (quantities_ && intervals.empty())
-    intervals = quantities_->from_equilibrium(
-        u, result.reason.empty() ? "a region has an initial stress or a temperature" : result.reason);
+  if (quantities_ && intervals.empty()) intervals = quantities_->from_equilibrium(u, result.reason);
   result.quantities = std::move(intervals);
   return result;
 }

@@ -96,8 +96,6 @@ class EnergyEstimator
  private:
   struct Parts;
 
-  /// Whether quantities have intervals from the bound: not with initial stress.
-  [[nodiscard]] bool has_intervals() const;
   /// The bound without quantities; calls `use` with what it was computed from.
   template <class Use>
   [[nodiscard]] EnergyBound bound(std::span<const double> u, const Use& use) const;

@@ -11,7 +11,7 @@ template <int dim>
 bool is_homogeneous(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets)
 {
   const auto is_zero = [](const problem::Field& field) { return field.is_zero(); };
-  bool result = true;
+  bool result = !form.problem().has_initial_stress();
   for (const problem::BoundaryCondition<dim>& boundary : form.problem().boundaries())
   {
     result = result && !boundary.spring;

@@ -23,10 +23,14 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
       bound(energy),
       forces(of.load().begin(), of.load().end()),
       junctions(on.junctions()),
+      has_polynomial_loads(of.problem().load_degree() <= of.space().degree() + 2 &&
+                           of.springs().has_polynomial_rest()),
       unresolved(0)
 {
-  if (form.problem().load_degree() > form.space().degree() + 2 || !form.springs().has_polynomial_rest())
-    unresolved = bound.oscillation;
+  if (!has_polynomial_loads || form.problem().has_initial_stress()) unresolved = bound.oscillation;
+  std::vector<double> of_initial(forces.size(), 0.0);
+  contact::add_initial_stress<dim>(form.data(), form.space(), of_initial);
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] -= of_initial[i];
   form.add_contact_load(t_h.at_points, forces);
 }
 

@@ -25,9 +25,10 @@ struct BoundedState
   const Stress<dim>& stress;         ///< equilibrated; tau is made from it
   const AdmissibleTraction<dim>& t_h;
   const EnergyBound& bound;
-  std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C
+  std::vector<double> forces;   ///< L(phi_i) + (t_h, phi_i)_C, L without initial stress: tau is total
   std::vector<char> junctions;  ///< of the facets
-  /// |L(z) - its value by quadrature| <= unresolved ||z||_en.
+  bool has_polynomial_loads;    ///< of degrees that rules integrate, with K u_0
+  /// |L(z) - its value by quadrature| <= unresolved ||z||_en, with that of the initial stress.
   double unresolved;
 
   BoundedState(const contact::NitscheForm<dim>& form, const ObstacleFacets<dim>& facets,

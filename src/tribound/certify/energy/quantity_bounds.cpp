@@ -214,7 +214,8 @@ QuantityInterval QuantityBounds<dim>::bounded(const Item& item, const LinearNumb
 {
   if (number.known) return known_interval(*number.known);
   const bool is_work = item.kind() == QuantityKind::load_work;
-  if (is_work && state.unresolved > 0) return {.reason = "the loads are no polynomials of low degree"};
+  if (is_work && !state.has_polynomial_loads && state.unresolved > 0)
+    return {.reason = "the loads are no polynomials of low degree"};
   if (item.kind() == QuantityKind::spring_force && !state.form.springs().has_polynomial_rest())
     return {.reason = "where the spring rests is no polynomial of low degree"};
   const LinearInterval of_number = intervals(number, number.base(state, item.parts));
