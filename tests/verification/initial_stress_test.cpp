@@ -168,6 +168,45 @@ TEST(InitialStress, BearsAgainstWalls)
   }
 }
 
+/// The interpolant on contact is no farther from the given stress than the form says.
+TEST(InitialStress, InterpolationIsBounded)
+{
+  for (const char* const field : {"sin(6*x)", "x^5*y + x^2", "x < 0.6 ? 1 : x", "exp(3*x)"})
+    for (int p = 1; p <= 4; ++p)
+    {
+      const DiscreteProblem<2> c(block<2>({3, 2}),
+                                 {.boundaries = {clamped<2>("left"), obstacle<2>("bottom")},
+                                  .regions = {heated<2>(lame(1, 0.3), 1, formula(field))}},
+                                 {.degree = p});
+      for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+      {
+        const auto interpolated = c.form.initial_traction(k);
+        double largest = 0;
+        for (int q = 0; q < c.form.n_segment_points(); ++q)
+        {
+          const Point<2> given = c.problem.initial_stress(0, c.form.contact_points(k)[q].x) * Point<2>(0, -1);
+          largest = std::max(largest, (interpolated.col(q) - given).norm());
+        }
+        EXPECT_LE(largest, c.form.initial_deviation(k) + 1e-14) << field << ", p = " << p;
+        EXPECT_LE(c.form.initial_deviation(k), 1e3 * largest + 1e-12) << field << ", p = " << p;
+      }
+    }
+}
+
+TEST(InitialStress, OfHighDegreeIsRefusedOnBonds)
+{
+  const auto form = [](const char* field)
+  {
+    const problem::JointLaw law(problem::Joint{.tension = {.strength = 1, .fracture_energy = 1}});
+    const DiscreteProblem<2> c(block<2>({3, 2}),
+                               {.boundaries = {clamped<2>("left"), obstacle<2>("bottom", law)},
+                                .regions = {heated<2>(lame(1, 0.3), 1, formula(field))}},
+                               {.degree = 2});
+  };
+  EXPECT_NO_THROW(form("x^2 - y"));
+  EXPECT_THROW(form("x^3"), InputError);
+}
+
 /// A temperature that is a polynomial of any degree, oscillates, jumps or is steep, and initial stresses.
 template <int dim>
 problem::Region<dim> random_region(RandomCase<dim>& random, const problem::Material& material)

@@ -168,13 +168,15 @@ void NitscheForm<dim>::find_initial_tractions()
       initial_tractions_.push_back(contact::initial_traction(*problem_, space_->mesh(), segment, s));
     initial_deviation_.push_back(
         initial_traction_deviation(*problem_, space_->mesh(), segment, space_->degree()));
-    if (initial_deviation_.back() > 0 && problem::has_memory(segment.contact->law))
-      throw InputError(
-          {},
-          fmt::format("temperature or initial stress is no polynomial of degree {} on the "
-                      "interface \"{}\", which has a bond",
-                      space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
-          "a polynomial there, or a higher degree");
+    if (initial_deviation_.back() == 0 || !problem::has_memory(segment.contact->law)) continue;
+    Where where;
+    for (const auto& term :
+         initial_stress_datum(*problem_, space_->mesh().region(segment.slave.facet.cell)).terms)
+      if (term.value->degree() > space_->degree()) where = term.value->where();
+    throw InputError(where,
+                     fmt::format("is no polynomial of degree {} on the interface \"{}\", which has a bond",
+                                 space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
+                     "a polynomial of no higher degree there");
   }
 }
 
