@@ -196,7 +196,7 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const 
       {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
       {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
       {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
-  if (contact::has_springs(problem))
+  if (problem.has_springs())
     quantities.push_back({.name = "spring", .kind = QuantityKind::spring_force, .boundary = "top"});
   EXPECT_EQ(certify::obstacles_unfit(form), "");
   const certify::EnergyBound bound =
