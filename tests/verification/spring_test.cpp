@@ -177,7 +177,7 @@ ProblemData<2> on_varying_springs(int which)
   const std::array<problem::Field, 7> stiffness = {2.0,
                                                    formula("1 + x"),
                                                    formula("2 - y + 0.3*y^2"),
-                                                   formula("x < 1 ? 1 : 3"),
+                                                   formula("x < 1 ? 0.01 : 3"),
                                                    formula("exp(x) + y"),
                                                    formula("x < 0.77 ? 1 : 3"),
                                                    formula("1/(x^2 - 1.9*x + 1)")};
@@ -324,6 +324,8 @@ TEST(Spring, IsLookedAtBetweenVerticesAndPoints)
   const DiscreteProblem<2> negative(block<2>({1, 1}), on("(x - 0.365)^2 - 0.005"), {.degree = 2});
   EXPECT_EQ(adapt::energy_bound<2>(negative.form, negative.method, negative.solve().u).reason,
             "the stiffness of a spring is negative somewhere");
+  const DiscreteProblem<2> between(block<2>({2, 1}), on("x < 1 ? (x - 0.86)^2 - 0.001 : 1"), {.degree = 2});
+  EXPECT_EQ(between.form.springs().why_unclear(), "the stiffness of a spring is negative somewhere");
   EXPECT_THROW(DiscreteProblem<2>(block<2>({2, 1}), on("2 - t"), {.degree = 2}), InputError);
   mesh::MeshData<2> rounded = block<2>({2, 1});
   for (Point<2>& x : rounded.vertices) x[1] -= 1e-17;

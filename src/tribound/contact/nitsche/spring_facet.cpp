@@ -116,14 +116,54 @@ double least_on_segment(double at_0, double at_half, double at_1)
   return slope < 0 && slope + curvature > 0 ? std::min(ends, at_0 - slope * slope / (2 * curvature)) : ends;
 }
 
+/// A quadratic function on a facet, known from its values inside: there a formula that jumps between facets
+/// has one branch.
+template <int dim>
+class QuadraticOnFacet
+{
+ public:
+  QuadraticOnFacet(const problem::Field& field, const FacetVertices<dim>& vertices)
+  {
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j <= i; ++j)
+      {
+        Barycentric lambda = Barycentric::Constant((1 - shrunk) / dim);
+        lambda[i] += shrunk / 2;
+        lambda[j] += shrunk / 2;
+        Point<dim> x = Point<dim>::Zero();
+        for (int k = 0; k < dim; ++k) x += lambda[k] * vertices[k];
+        values_(i, j) = values_(j, i) = field(x);
+      }
+  }
+
+  /// Its value in the middle of vertices i and j, by Lagrange's basis of the points inside.
+  [[nodiscard]] double between(int i, int j) const
+  {
+    Barycentric lambda = Barycentric::Constant((1 - 1 / shrunk) / dim);
+    lambda[i] += 1 / (2 * shrunk);
+    lambda[j] += 1 / (2 * shrunk);
+    double sum = 0;
+    for (int k = 0; k < dim; ++k)
+      for (int l = 0; l <= k; ++l)
+        sum += values_(k, l) * (k == l ? lambda[k] * (2 * lambda[k] - 1) : 4 * lambda[k] * lambda[l]);
+    return sum;
+  }
+
+ private:
+  using Barycentric = Eigen::Matrix<double, dim, 1>;
+  static constexpr double shrunk = 0.5;  // the simplex of these points, over the facet
+  Eigen::Matrix<double, dim, dim> values_;
+};
+
 /// The least value of a quadratic function on a facet, up to rounding: at a vertex, on an edge, or where its
 /// gradient vanishes inside. (If that is so on a line, the line meets an edge.)
 template <int dim>
 double least_of_quadratic(const problem::Field& field, const FacetVertices<dim>& vertices)
 {
-  const auto between = [&](int i, int j) { return field(Point<dim>((vertices[i] + vertices[j]) / 2)); };
+  const QuadraticOnFacet<dim> quadratic(field, vertices);
+  const auto between = [&](int i, int j) { return quadratic.between(i, j); };
   std::array<double, dim> at;
-  for (int i = 0; i < dim; ++i) at[i] = field(vertices[i]);
+  for (int i = 0; i < dim; ++i) at[i] = between(i, i);
   double least = least_on_segment(at[0], between(0, 1), at[1]);
   if constexpr (dim == 3)
   {
