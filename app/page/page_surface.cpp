@@ -106,7 +106,7 @@ class SurfaceSampler
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
-    has_rest_ = dim == 2 && form.problem().has_initial_stress();
+    has_rest_ = std::ranges::any_of(form.problem().regions(), &io::has_out_of_plane_rest<dim>);
     surface_.stress.resize(stress_entries<dim>.size() + (has_rest_ ? 1 : 0));
     at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
     values_.resize(at_nodes_.n_points);

@@ -20,6 +20,7 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/nitsche/residual.h"
+#include "tribound/io/fields/tensor_field.h"
 #include "tribound/mesh/refine.h"
 #include "verification/energy_effectivity.h"
 #include "verification/loads_reference.h"
@@ -171,10 +172,10 @@ TEST(InitialStress, BearsAgainstWalls)
 /// The interpolant on contact is no farther from the given stress than the form says.
 TEST(InitialStress, InterpolationIsBounded)
 {
-  for (const char* const field : {"sin(6*x)", "x^5*y + x^2", "x < 0.6 ? 1 : x", "exp(3*x)"})
+  for (const char* const field : {"sin(6*x)", "x^5*y + x^2", "x < 0.6 ? 1 : x", "x < 1 ? 1 : 3", "exp(3*x)"})
     for (int p = 1; p <= 4; ++p)
     {
-      const DiscreteProblem<2> c(block<2>({3, 2}),
+      const DiscreteProblem<2> c(block<2>({4, 2}),
                                  {.boundaries = {clamped<2>("left"), obstacle<2>("bottom")},
                                   .regions = {heated<2>(lame(1, 0.3), 1, formula(field))}},
                                  {.degree = p});
@@ -188,9 +189,30 @@ TEST(InitialStress, InterpolationIsBounded)
           largest = std::max(largest, (interpolated.col(q) - given).norm());
         }
         EXPECT_LE(largest, c.form.initial_deviation(k) + 1e-14) << field << ", p = " << p;
-        EXPECT_LE(c.form.initial_deviation(k), 1e3 * largest + 1e-12) << field << ", p = " << p;
+        const double jump = std::string(field) == "x < 1 ? 1 : 3" ? 12 : 0;  // of both sides, on either
+        EXPECT_LE(c.form.initial_deviation(k), 1e3 * largest + jump + 1e-12) << field << ", p = " << p;
       }
     }
+}
+
+/// Heated by 10 degrees and held, plane strain has sigma_zz = nu (sigma_xx + sigma_yy) - E alpha 10.
+TEST(InitialStress, ActsAcrossThePlane)
+{
+  const problem::Material material = lame(2, 0.3);
+  const mesh::Mesh<2> mesh(block<2>({1, 1}));
+  const auto rest = [&](const problem::Region<2>& region) {
+    return io::out_of_plane_rest<2>(ProblemData<2>{.regions = {region}}.on(mesh), 0, {0.5, 0.5});
+  };
+  EXPECT_NEAR(rest(heated<2>(material, 1e-3, 10.0)), -2 * 1e-3 * 10, 1e-15);
+  problem::Region<2> across = heated<2>(material, 0, 0.0);
+  across.initial_stress_zz = -5.0;
+  EXPECT_EQ(rest(across), -5);
+  EXPECT_EQ(rest(heated<2>(material, 0, 0.0)), 0);
+}
+
+TEST(InitialStress, MissedMomentsAddToTheNormAndTheRestToItsSquare)
+{
+  EXPECT_DOUBLE_EQ((contact::StressRemainder{.oscillation = 3, .projection = 1}.added_to(3)), 5);
 }
 
 TEST(InitialStress, OfHighDegreeIsRefusedOnBonds)

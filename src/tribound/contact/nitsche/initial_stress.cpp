@@ -150,7 +150,8 @@ Point<dim> initial_traction(const problem::Problem<dim>& problem, const mesh::Me
   return sum;
 }
 
-/// |f - I f| <= (1 + Lambda) |f - P| for every P of degree p.
+/// |f - I f| <= (1 + Lambda) |f - P| for every P of degree p. Nodes are on the boundary of the segment, and
+/// it may itself be where a formula jumps: the values on all sides count.
 template <int dim>
 double initial_traction_deviation(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                   const ContactSegment<dim>& segment, int degree)
@@ -169,7 +170,7 @@ double initial_traction_deviation(const problem::Problem<dim>& problem, const me
              initial_stress_datum(problem, mesh.region(side.facet.cell)).terms)
         {
           if (value->degree() <= degree || !value->is_enclosed()) continue;
-          value->enclose(vertices, dim, taylor);
+          value->enclose(vertices, dim, taylor, problem::Sides::around);
           const double remainder = problem::distance_from_polynomials(taylor, degree + 1);
           if (!std::isfinite(remainder))
             throw InputError(value->where(), "may be unbounded on a boundary in contact",

@@ -155,7 +155,7 @@ auto NitscheForm<dim>::traction_without_gap(std::span<const double> u, std::size
   return nodal * nodes_.values();
 }
 
-/// The Lipschitz constants of laws with a bond are not known: for them the interpolation must be exact.
+/// The Lipschitz constants of laws with a history are not known: for them the interpolation must be exact.
 template <int dim>
 void NitscheForm<dim>::find_initial_tractions()
 {
@@ -170,13 +170,18 @@ void NitscheForm<dim>::find_initial_tractions()
         initial_traction_deviation(*problem_, space_->mesh(), segment, space_->degree()));
     if (initial_deviation_.back() == 0 || !problem::has_memory(segment.contact->law)) continue;
     Where where;
-    for (const auto& term :
-         initial_stress_datum(*problem_, space_->mesh().region(segment.slave.facet.cell)).terms)
-      if (term.value->degree() > space_->degree()) where = term.value->where();
-    throw InputError(where,
-                     fmt::format("is no polynomial of degree {} on the interface \"{}\", which has a bond",
-                                 space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
-                     "a polynomial of no higher degree there");
+    segment.for_each_side(
+        [&](const SegmentSide<dim>& side)
+        {
+          for (const auto& term :
+               initial_stress_datum(*problem_, space_->mesh().region(side.facet.cell)).terms)
+            if (term.value->degree() > space_->degree()) where = term.value->where();
+        });
+    throw InputError(
+        where,
+        fmt::format("is no polynomial of degree {} on the interface \"{}\", whose law has a history",
+                    space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
+        "a polynomial of no higher degree there");
   }
 }
 

@@ -21,9 +21,15 @@ double out_of_plane_ratio(const problem::Material& material)
 }
 
 template <int dim>
+bool has_out_of_plane_rest(const problem::Region<dim>& region)
+{
+  return dim == 2 && (region.has_initial_stress() || !region.initial_stress_zz.is_zero());
+}
+
+template <int dim>
 double out_of_plane_rest(const problem::Problem<dim>& problem, int region, const Point<dim>& x)
 {
-  if (dim == 3 || !problem.regions()[region].has_initial_stress()) return 0;
+  if (!has_out_of_plane_rest(problem.regions()[region])) return 0;
   return problem.initial_stress_zz(region, x) -
          out_of_plane_ratio(problem.material(region)) * problem.initial_stress(region, x).trace();
 }
@@ -77,6 +83,19 @@ std::vector<Tensor<dim>> values_at(const TensorField<dim>& field, const fem::Lag
   return values;
 }
 
+namespace
+{
+
+/// A point of a cell, a little inside: a formula that jumps between cells has their branch there.
+template <int dim>
+Point<dim> inside(const mesh::CellMap<dim>& map, const Point<dim>& xhat)
+{
+  constexpr double inwards = 1e-9;
+  return map(Point<dim>((1 - inwards) * xhat + Point<dim>::Constant(inwards / (dim + 1))));
+}
+
+}  // namespace
+
 template <int dim>
 TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                               std::span<const double> u)
@@ -94,7 +113,7 @@ TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::L
                   material, fem::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
                                                   map.inverse_transpose));
               if (problem.regions()[region].has_initial_stress())
-                values[i] += problem.initial_stress(region, map(space.basis().node_points()[i]));
+                values[i] += problem.initial_stress(region, inside(map, space.basis().node_points()[i]));
             }
           }};
 }
@@ -122,6 +141,8 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
           }};
 }
 
+template bool has_out_of_plane_rest(const problem::Region<2>&);
+template bool has_out_of_plane_rest(const problem::Region<3>&);
 template double out_of_plane_rest(const problem::Problem<2>&, int, const Point<2>&);
 template double out_of_plane_rest(const problem::Problem<3>&, int, const Point<3>&);
 template std::array<double, 6> symmetric_part(const Tensor<2>&, double);

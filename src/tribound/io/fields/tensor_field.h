@@ -50,6 +50,9 @@ template <int dim>
 /// What the initial stress adds to sigma_zz in 2D, sigma_0,zz - ratio (sigma_0,xx + sigma_0,yy); 0 in 3D.
 template <int dim>
 [[nodiscard]] double out_of_plane_rest(const problem::Problem<dim>& problem, int region, const Point<dim>& x);
+/// Whether that may be anything in the region.
+template <int dim>
+[[nodiscard]] bool has_out_of_plane_rest(const problem::Region<dim>& region);
 
 /// Symmetric part of s in VTK's order (xx, yy, zz, xy, yz, xz); `ratio`, see out_of_plane_ratio(), gives zz
 /// in 2D.
