@@ -94,11 +94,14 @@ std::string describe_law(const problem::Problem<dim>& problem)
 }
 
 /// How data that are not polynomials were treated.
-std::string describe_data(const contact::DataEffort& effort, int degree, bool has_springs)
+template <int dim>
+std::string describe_data(const contact::DataEffort& effort, int degree, const problem::Problem<dim>& problem)
 {
   std::string exact = fmt::format(
       "loads, gaps and thresholds that are polynomials of degree {} are integrated exactly", degree);
-  if (has_springs)
+  if (problem.has_initial_stress())
+    exact += fmt::format(", so are temperature and initial stress, in contact of degree {}", degree - 2);
+  if (problem.has_springs())
     exact += fmt::format(", forces of springs where k has degree 2 and k u_0 degree {}", degree);
   if (effort.formulas == 0) return exact;
   const std::string cut =
@@ -106,7 +109,7 @@ std::string describe_data(const contact::DataEffort& effort, int degree, bool ha
                              : fmt::format(", {} of them cut into {} parts", effort.subdivided, effort.parts);
   return exact + fmt::format(
                      "; other formulas are enclosed by intervals on {} cells and boundary facets{}, and "
-                     "what their integrals may miss is in osc, neu, cnt, frc and quad",
+                     "what their integrals may miss is in osc, str, neu, cnt, frc and quad",
                      effort.formulas, cut);
 }
 
@@ -154,8 +157,7 @@ std::string describe_geometry(const ContactGeometryFacts& facts)
 template <int dim>
 std::string describe_quadrature(const contact::NitscheForm<dim>& form, ContactRule rule)
 {
-  std::string text =
-      describe_data(form.data().effort(), form.space().degree() + 2, form.problem().has_springs());
+  std::string text = describe_data(form.data().effort(), form.space().degree() + 2, form.problem());
   if (!form.problem().has_contact()) return text;
   return text +
          (rule == ContactRule::resolved
