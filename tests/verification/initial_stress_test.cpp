@@ -14,6 +14,7 @@
 
 #include "support/discrete_problem.h"
 #include "support/meshes.h"
+#include "support/two_blocks.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/estimate.h"
@@ -169,6 +170,47 @@ TEST(InitialStress, BearsAgainstWalls)
   }
 }
 
+/// Two blocks between walls with initial stresses s along y, on meshes that do not match: sigma_yy is their
+/// mean in both, and the means of both sides on the interface have to be taken of C eps(u) + sigma_0.
+template <int dim>
+void expect_in_series(const problem::ContactLaw& law, int p)
+{
+  const auto region = [](const char* name, double s)
+  {
+    problem::Region<dim> result{.name = name, .material = lame(1.0, 0.0)};
+    result.initial_stress[1] = s;
+    return result;
+  };
+  ProblemData<dim> data{
+      .boundaries = {fixed<dim>("top", free, 0.0, free), fixed<dim>("bottom_below", free, 0.0, free)},
+      .regions = {region("box", -0.3), region("box_below", -0.1)},
+      .pairs = {pair<dim>("bottom", "top_below", law)}};
+  for (const char* side : {"left", "left_below"})
+    data.boundaries.push_back(fixed<dim>(side, 0.0, free, free));
+  if (dim == 3)
+    for (const char* side : {"back", "back_below"})
+      data.boundaries.push_back(fixed<dim>(side, free, free, 0.0));
+  const DiscreteProblem<dim> c(two_blocks<dim>(), data, {.degree = p, .newton = {.tolerance = 1e-13}});
+  const solve::NewtonResult<dim> solved = c.solve();
+  for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+    for (const contact::ContactState<dim>& state : c.form.contact_states(solved.u, k))
+      EXPECT_NEAR(state.traction[1], -0.2 * state.normal[1], 1e-12);
+  const auto stress = certify::equilibrate<dim>(c.form, solved.u, solved.traction);
+  EXPECT_LE(certify::estimate<dim>(c.form, solved.u, stress).total_sharp, 1e-12);
+}
+
+TEST(InitialStress, DiffersOnBothSidesOfAnInterface)
+{
+  for (const problem::ContactLaw& law :
+       {problem::ContactLaw(Frictionless()), problem::ContactLaw(Tresca(0.1)), problem::ContactLaw(Tied())})
+    for (int p = 1; p <= 3; ++p)
+    {
+      SCOPED_TRACE(p);
+      expect_in_series<2>(law, p);
+      if (p < 3) expect_in_series<3>(law, p);
+    }
+}
+
 /// The interpolant on contact is no farther from the given stress than the form says.
 TEST(InitialStress, InterpolationIsBounded)
 {
@@ -193,6 +235,34 @@ TEST(InitialStress, InterpolationIsBounded)
         EXPECT_LE(c.form.initial_deviation(k), 1e3 * largest + jump + 1e-12) << field << ", p = " << p;
       }
     }
+}
+
+/// What rules miss of the initial stress, on contact and in cells, is in the bounds.
+TEST(InitialStress, WhatIsMissedCounts)
+{
+  const problem::Material material = lame(1, 0.3);
+  const DiscreteProblem<2> c(
+      block<2>({4, 2}),
+      {.boundaries = {clamped<2>("left"), obstacle<2>("bottom", problem::Coulomb(0.5))},
+       .regions = {heated<2>(material, 0.1, formula("sin(6*x)"))}},
+      {.degree = 2, .newton = {.tolerance = 1e-12}});
+  const solve::NewtonResult<2> solved = c.solve();
+  double on_contact = 0;
+  for (std::size_t k = 0; k < c.form.segments().size(); ++k)
+    on_contact +=
+        c.form.segments()[k].h * c.form.segments()[k].measure * std::pow(c.form.initial_deviation(k), 2);
+  double in_cells = 0;
+  for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
+    in_cells += std::pow(c.form.data().initial_stress().remainder(cell).oscillation, 2);
+  ASSERT_GT(std::min(on_contact, in_cells), 1e-8);
+  const auto stress = certify::equilibrate<2>(c.form, solved.u, solved.traction);
+  const certify::BoundComponents bound = certify::estimate<2>(c.form, solved.u, stress).global;
+  EXPECT_GE(bound.cnt, std::sqrt(on_contact));
+  EXPECT_GE(bound.frc, 1.5 * std::sqrt(on_contact));
+  EXPECT_GE(bound.str, std::sqrt(in_cells));
+  const certify::EnergyBound energy = certify::EnergyEstimator<2>(c.form, {})(solved.u);
+  ASSERT_EQ(energy.reason, "");
+  EXPECT_GE(energy.oscillation, std::sqrt(in_cells / (2 * material.mu)));
 }
 
 /// Heated by 10 degrees and held, plane strain has sigma_zz = nu (sigma_xx + sigma_yy) - E alpha 10.
