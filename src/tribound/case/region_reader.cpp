@@ -21,7 +21,8 @@ const Options<MaterialConfig>& material_options()
                                 "Poisson's ratio, such as 0.3; nearly incompressible is 0.499, not 0.5"),
                       "Poisson's ratio in (-1, 0.5): nu = 0.3"),
        option<&M::plane>("plane", one_of({"strain", "stress"})),
-       option<&M::alpha>("alpha", number_in({}, "strain per degree, such as 12e-6 for steel"))});
+       option<&M::alpha>("alpha",
+                         number_in({.includes_lower = true}, "strain per degree, such as 12e-6 for steel"))});
   return options;
 }
 
