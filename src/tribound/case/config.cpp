@@ -192,7 +192,8 @@ const Table& case_table()
                            {"probe", keys_of(probes_table())},
                            {"section", keys_of(sections_table())},
                            {"history", keys_of(history_table())}} +
-          method_keys()};
+          method_keys(),
+      .refused = point_loads()};
   return table;
 }
 

@@ -5,6 +5,18 @@
 namespace tribound::case_file
 {
 
+Refusal point_loads()
+{
+  return {
+      .keys = {"force", "forces", "point", "points", "point_load", "point_loads", "point_force",
+               "point_forces", "nodal_force", "nodal_forces", "concentrated_force"},
+      .problem = "a force needs an area: at a point the displacement under it is infinite, in 2D and in 3D",
+      .hint =
+          "traction = force / area on a boundary; in place of a point, a patch of given radius around it: "
+          "traction = [0, \"abs(x - 1) < 0.1 ? -5/0.2 : 0\"], in 3D "
+          "[0, 0, \"(x - 1)^2 + y^2 < 0.1^2 ? -5/(pi*0.1^2) : 0\"]"};
+}
+
 Value truth()
 {
   return {.truth = true};

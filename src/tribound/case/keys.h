@@ -73,6 +73,14 @@ struct Relation
   std::vector<std::string> excludes{};
 };
 
+/// Keys of other programs that have a reason for not being here.
+struct Refusal
+{
+  std::vector<std::string> keys{};
+  std::string problem{};
+  std::string hint{};
+};
+
 /// The keys of a table.
 struct Table
 {
@@ -83,6 +91,7 @@ struct Table
   std::vector<Relation> relations{};
   std::string choice{};            ///< the key whose word chooses a group; empty: none
   std::vector<KeyGroup> groups{};  ///< the first one applies where the key is optional
+  Refusal refused{};
 };
 
 /// Make values; `hint` is a sentence about what would be right.
@@ -111,6 +120,9 @@ struct Table
 
 /// Concatenates the lists.
 [[nodiscard]] std::vector<Key> operator+(std::vector<Key> keys, const std::vector<Key>& others);
+
+/// Forces in points, under which the displacement is infinite: 1/r in 3D, log r in 2D.
+[[nodiscard]] Refusal point_loads();
 
 /// Every key and table of a case file.
 [[nodiscard]] const Table& case_table();

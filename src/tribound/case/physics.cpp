@@ -103,13 +103,14 @@ const Table& boundary_table()
               {"interface", keys_of(obstacle_interface_table())},
               {"slider", datum()}} +
           slider_geometry_keys(),
-      .relations = {
-          {.key = "contact",
-           .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider"}},
-          {.key = "interface", .excludes = {"displacement", "traction", "pressure", "spring", "slider"}},
-          {.key = "slider", .excludes = {"displacement", "traction", "pressure", "spring"}},
-          {.key = "shape", .needs = {"slider"}},
-          {.key = "normal", .needs = {"slider"}}}};
+      .relations = {{.key = "contact",
+                     .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider"}},
+                    {.key = "interface",
+                     .excludes = {"displacement", "traction", "pressure", "spring", "slider"}},
+                    {.key = "slider", .excludes = {"displacement", "traction", "pressure", "spring"}},
+                    {.key = "shape", .needs = {"slider"}},
+                    {.key = "normal", .needs = {"slider"}}},
+      .refused = point_loads()};
   return table;
 }
 
@@ -152,6 +153,9 @@ void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
   const Node& node = *of_boundary.find("spring");
   SpringConfig& spring = boundary.spring.emplace();
   spring.where = node.where;
+  if (std::holds_alternative<Node::Array>(node.value))
+    fail_type(node, "one stiffness, or those along and across the normal",
+              "spring = 1e7, or { normal = 1e7, tangential = 1e6 }");
   if (!node.is_table())
   {
     of_boundary.read("spring", spring.normal);

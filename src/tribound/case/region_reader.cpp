@@ -44,7 +44,8 @@ const Options<LoadConfig>& load_options()
        option<&LoadConfig::initial_stress>(
            "initial_stress", array_of(datum(), 3,
                                       "the entries of a symmetric tensor: [xx, yy, xy], in 3D [xx, yy, zz, "
-                                      "xy, yz, xz]"))});
+                                      "xy, yz, xz]"))},
+      point_loads());
   return options;
 }
 
@@ -63,7 +64,7 @@ LoadConfig read_load(const TableReader& table, std::string region)
 /// Adds to the table a subtable with the same keys for each region.
 Table of_regions(const Table& table)
 {
-  return {.name = table.name, .keys = table.keys, .named = keys_of(table)};
+  return {.name = table.name, .keys = table.keys, .named = keys_of(table), .refused = table.refused};
 }
 
 }  // namespace

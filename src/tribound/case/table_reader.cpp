@@ -46,6 +46,9 @@ TableReader::TableReader(const Node& node, const Table& table)
   if (entries_ == nullptr)
     fail_type(node, "a table", fmt::format("a table with the keys {}", fmt::join(key_names(table), ", ")));
   for (const Entry& entry : *entries_)
+    if (!is_named(entry) && std::ranges::count(table.refused.keys, entry.name) > 0)
+      throw InputError(entry.where, table.refused.problem, table.refused.hint);
+  for (const Entry& entry : *entries_)
     if (!is_named(entry) && std::ranges::find(table.keys, entry.name, &Key::name) == table.keys.end())
       fail_unknown_key(entry, table);
 }

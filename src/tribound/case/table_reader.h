@@ -172,7 +172,8 @@ template <class T>
 class Options
 {
  public:
-  Options(std::string name, const std::vector<Option<T>>& options) : table_{.name = std::move(name)}
+  Options(std::string name, const std::vector<Option<T>>& options, Refusal refused = {})
+      : table_{.name = std::move(name), .refused = std::move(refused)}
   {
     for (const Option<T>& option : options)
     {

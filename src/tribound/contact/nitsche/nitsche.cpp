@@ -72,12 +72,13 @@ void check_direction(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& seg
   const mesh::BoundaryFacet& facet = segment.slave.facet;
   const double along = direction.dot(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
   if (along < least)
-    throw InputError({},
-                     fmt::format("the slider on \"{}\" acts at {} degrees from the normal of the facet at {}",
-                                 mesh.boundary_names()[facet.tag],
-                                 std::lround(180 / std::numbers::pi * std::acos(std::max(along, -1.0))),
-                                 mesh::describe(x)),
-                     "a normal out of the body, within 72 degrees of those of the facets");
+    throw InputError(
+        segment.contact->normal ? segment.contact->normal->components().front().where() : Where{},
+        fmt::format("the slider on \"{}\" acts at {} degrees from the normal of the facet at {}",
+                    mesh.boundary_names()[facet.tag],
+                    std::lround(180 / std::numbers::pi * std::acos(std::max(along, -1.0))),
+                    mesh::describe(x)),
+        "a normal out of the body, within 72 degrees of those of the facets");
 }
 
 }  // namespace
