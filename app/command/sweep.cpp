@@ -124,7 +124,7 @@ class Sweep
     const case_file::SweepTable table = table_of(request);
     const case_file::Config config = case_file::read_config(file, request.overrides);
     directory_ = config.output.directory / "sweep";
-    has_page_ = config.output.report;
+    if (config.output.report) page_ = PageTemplate(find_shared_file("report.html"));
     record_ = {config.title, file, table.keys, {}, titles_of(table.keys, config)};
     MeshHashes mesh_hash;
     for (const auto& values : table.rows)
@@ -233,11 +233,7 @@ class Sweep
     print(sweep_line(record_, run));
   }
 
-  void write() const
-  {
-    write_sweep(directory_, record_);
-    if (has_page_) write_sweep_page(find_shared_file("report.html"), directory_, record_);
-  }
+  void write() const { write_sweep_results(page_, directory_, record_); }
 
   void end_all() const
   {
@@ -256,7 +252,7 @@ class Sweep
 
   const SweepRequest& request_;
   std::filesystem::path directory_;
-  bool has_page_ = false;
+  PageTemplate page_;
   SweepRecord record_;
   std::map<pid_t, SweepRun*> running_;
   std::size_t next_ = 0;

@@ -24,6 +24,7 @@ inline constexpr std::string_view page_data_marker = "<!-- data of the page -->"
 class PageTemplate
 {
  public:
+  PageTemplate() = default;  ///< empty
   /// Empty where there is no such file, or no place for data in it.
   explicit PageTemplate(const std::filesystem::path& path);
 
@@ -35,7 +36,7 @@ class PageTemplate
 
  private:
   std::string text_;
-  std::size_t marker_;  ///< its position in the text; npos if there is none
+  std::size_t marker_ = std::string::npos;  ///< its position in the text; npos if there is none
 };
 
 /// This computer, and the time; unknown values are empty or 0.

@@ -124,16 +124,16 @@ void write_study_page(const std::filesystem::path& page_template, const std::fil
               {"files", files_json(directory, study_files(directory, study))}});
 }
 
-void write_sweep_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
-                      const SweepRecord& sweep)
+void write_sweep_results(const PageTemplate& page, const std::filesystem::path& directory,
+                         const SweepRecord& sweep)
 {
-  const PageTemplate page(page_template);
+  const io::Json object = sweep_object(sweep);
+  write_sweep(directory, sweep, object);
   if (page.empty()) return;
   std::vector<std::string> files = {"sweep.csv", "sweep.json"};
   for (const SweepRun& run : sweep.runs) files.push_back(run.name + "/report.html");
-  page.write(
-      directory / "report.html", "sweep-data",
-      {{"sweep", sweep_object(sweep)}, {"machine", machine_json()}, {"files", files_json(directory, files)}});
+  page.write(directory / "report.html", "sweep-data",
+             {{"sweep", object}, {"machine", machine_json()}, {"files", files_json(directory, files)}});
 }
 
 void add_true_errors(const std::filesystem::path& page, std::span<const TrueErrors> errors)

@@ -68,8 +68,9 @@ class ReportPage
 void write_study_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
                       const Study& study);
 
-/// The same of a sweep, with links to its tables and the pages of its runs.
-void write_sweep_page(const std::filesystem::path& page_template, const std::filesystem::path& directory,
-                      const SweepRecord& sweep);
+/// sweep.csv and sweep.json, and with a template report.html of a sweep, with links to its tables and the
+/// pages of its runs. Throws WriteError when a file cannot be written.
+void write_sweep_results(const PageTemplate& page, const std::filesystem::path& directory,
+                         const SweepRecord& sweep);
 
 }  // namespace tribound::app

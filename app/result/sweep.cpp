@@ -258,15 +258,10 @@ io::Json sweep_object(const SweepRecord& sweep)
   return object;
 }
 
-std::string sweep_json(const SweepRecord& sweep)
-{
-  return io::json_text(sweep_object(sweep));
-}
-
-void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep)
+void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep, const io::Json& object)
 {
   io::write_file(directory / "sweep.csv", sweep_csv(sweep));
-  io::write_file(directory / "sweep.json", sweep_json(sweep));
+  io::write_file(directory / "sweep.json", io::json_text(object));
 }
 
 std::string sweep_line(const SweepRecord& sweep, const SweepRun& run)

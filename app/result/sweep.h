@@ -52,10 +52,9 @@ void read_results(const std::filesystem::path& directory, SweepRun& run);
 /// A row per run: name, the keys, status, reason, then every figure of any run.
 [[nodiscard]] std::string sweep_csv(const SweepRecord& sweep);
 [[nodiscard]] io::Json sweep_object(const SweepRecord& sweep);
-[[nodiscard]] std::string sweep_json(const SweepRecord& sweep);
 
-/// Writes sweep.csv and sweep.json. Throws WriteError when a file cannot be written.
-void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep);
+/// Writes sweep.csv and, with sweep_object(), sweep.json. Throws WriteError when a file cannot be written.
+void write_sweep(const std::filesystem::path& directory, const SweepRecord& sweep, const io::Json& object);
 
 /// A line on a run that has ended.
 [[nodiscard]] std::string sweep_line(const SweepRecord& sweep, const SweepRun& run);

@@ -48,7 +48,7 @@ class SweepTest : public ::testing::Test
   {
     run.exit_code = exit_code;
     const app::SweepRecord record = {"", "case.toml", {"degree"}, {run}};
-    app::write_sweep(directory, record);
+    app::write_sweep(directory, record, app::sweep_object(record));
     return app::complete_runs(directory, record);
   }
 
@@ -74,7 +74,7 @@ TEST_F(SweepTest, UnitsAreThoseOfTheCertificates)
   {
     std::ofstream(directory / "0001/certificate.json") << io::Json{
         {"case", {{"sha256", "abc"}}}, {"status", "certified"}, {"reason", nullptr}, {"units", units}};
-    return io::Json::parse(app::sweep_json({"", "case.toml", {"degree"}, {read(0)}}))["units"];
+    return app::sweep_object({"", "case.toml", {"degree"}, {read(0)}})["units"];
   };
   EXPECT_EQ(units_after({{"force", "N/mm"}})["force"], "N/mm");
   EXPECT_TRUE(units_after(nullptr).is_null());
@@ -105,7 +105,7 @@ TEST_F(SweepTest, AnotherMeshFileIsSolvedAgain)
   leave_certificate("certified");
   run.exit_code = 0;
   app::SweepRecord record = {"", "case.toml", {"degree"}, {run}};
-  app::write_sweep(directory, record);
+  app::write_sweep(directory, record, app::sweep_object(record));
   record.runs[0].mesh_sha256 = "changed";
   EXPECT_THAT(app::complete_runs(directory, record), IsEmpty());
 }
