@@ -5,7 +5,6 @@
 
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/contact/nitsche/residual.h"
-#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/quadrature.h"
 #include "tribound/mesh/geometry.h"

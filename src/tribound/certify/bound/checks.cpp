@@ -185,17 +185,22 @@ std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheFo
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   std::vector<std::vector<Point<dim>>> moments(mesh.boundary().size());
   std::vector<Point<dim>> g(rule.size());
+  const std::span<const contact::SpringFacet<dim>> spring_facets = form.springs().facets();
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
+    const contact::SpringFacet<dim>* spring = form.springs().on(number);
+    if (spring == nullptr && !form.data().has_traction(number)) continue;
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
-    const bool has_spring = form.problem().boundary(facet.tag).spring.has_value();
-    if (!has_spring && !form.data().has_traction(number)) continue;
     FacetMoments<dim> on_facet(mesh, facet, degree);
     moments[number] = on_facet.none();
     form.data().traction(number, g);
+    if (spring != nullptr)
+    {
+      const std::size_t first = (spring - spring_facets.data()) * rule.size();
+      for (int q = 0; q < rule.size(); ++q) g[q] += springs[first + q];
+    }
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      on_facet.add(rule.points[q], dx, has_spring ? Point<dim>(g[q] + springs[q]) : g[q], moments[number]);
-    if (has_spring) springs = springs.subspan(rule.size());
+      on_facet.add(rule.points[q], dx, g[q], moments[number]);
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side(

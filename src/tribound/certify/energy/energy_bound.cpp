@@ -20,7 +20,6 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/form_history.h"
 #include "tribound/contact/nitsche/residual.h"
-#include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/mesh.h"
 
