@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file case_format.h
-/// The tables of docs/case-format.md. The first column must be "key" (keys of the section) or "key of `...`"
-/// (keys of the table of that name in the section).
+/// The tables of docs/case-format.md, and cases to try their keys in. The first column must be "key" (keys of
+/// the section) or "key of `...`" (keys of the table of that name in the section).
 
 #include <algorithm>
 #include <fstream>
@@ -101,6 +101,29 @@ inline std::vector<Row> documented_keys()
   std::erase_if(rows, [](const Row& row)
                 { return row.table == "interface" || row.table == "water" || row.table == "drain"; });
   return rows;
+}
+
+/// A valid case. The boundary "top" has contact only when its keys are tried out.
+inline std::string valid_case(const std::string& table)
+{
+  std::string text =
+      "mesh.box = { lower = [0, 0], upper = [1, 1], cells = [1, 1] }\nmaterial = { E = 1, nu = 0 }\n";
+  if (table.starts_with("load")) text += "load.body = [0, 0]\n";
+  if (table == "boundary.top") text += "boundary.top.traction = [0, 0]\n";
+  if (table == "history") text += "history.steps = [1]\n";
+  if (table == "units") text += "units = { length = 'mm', force = 'N' }\n";
+  if (table == "regularisation") text += "regularisation = {}\n";
+  if (table == "boundary.top.contact") text += "boundary.top.contact = {}\n";
+  if (table.starts_with("obstacle.o")) text += "boundary.top.contact.obstacle = 'o'\n";
+  if (table.starts_with("shape.o")) text += "boundary.top.contact = { shape = 'o', normal = 'facet' }\n";
+  if (table == "obstacle.o.plane") text += "obstacle.o.plane = { point = [0, 0], normal = [0, 1] }\n";
+  if (table == "obstacle.o.circle") text += "obstacle.o.circle = { centre = [0, 0], radius = 1 }\n";
+  if (table == "obstacle.o.cylinder")
+    text += "obstacle.o.cylinder = { centre = [0, 0, 0], axis = [0, 0, 1], radius = 1 }\n";
+  if (table == "section.o") text += "section.o = { point = [0, 0], normal = [0, 1] }\n";
+  if (table == "contact.0") text += "contact = [{slave = 'a', master = 'b'}]\n";
+  if (table == "quantity.0") text += "quantity = [{kind = 'mean_displacement', boundary = 'top'}]\n";
+  return text;
 }
 
 }  // namespace tribound::test
