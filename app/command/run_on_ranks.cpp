@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "app/command/run.h"
+#include "app/command/with_case.h"
 #include "app/console/console.h"
 #include "app/console/text.h"
 #include "app/shared_file.h"
@@ -155,9 +156,9 @@ ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::strin
   const bool is_plane = ranks.on_first(
       [&]
       {
-        whole.emplace(
-            mesh::read_mesh(is_alone ? config.mesh : mesh::coarser_box(config.mesh, most_to_look_at),
-                            case_file::find_seams(config), &stop_on_signals()));
+        whole.emplace(read_mesh(config,
+                                is_alone ? config.mesh : mesh::coarser_box(config.mesh, most_to_look_at),
+                                &stop_on_signals(), request.quiet));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   if (is_alone)

@@ -3,8 +3,14 @@
 /// @file with_case.h
 /// The case of a command, read with its mesh.
 
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstdio>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "app/command/commands.h"
 #include "tribound/case/config.h"
@@ -13,12 +19,23 @@
 namespace tribound::app
 {
 
+/// The mesh of a case; what its reader leaves out is said on stderr, unless `quiet`.
+[[nodiscard]] inline mesh::AnyMesh read_mesh(const case_file::Config& config, const mesh::MeshSource& source,
+                                             const std::atomic<bool>* stop, bool quiet)
+{
+  std::vector<std::string> notes;
+  mesh::AnyMesh mesh = mesh::read_mesh(source, case_file::find_seams(config), stop, &notes);
+  for (const std::string& note : notes)
+    if (!quiet) fmt::print(stderr, "tribound: note: {}\n", note);
+  return mesh;
+}
+
 /// Calls work(config, mesh) in the dimension of the mesh; `stop` may interrupt reading.
 template <class Work>
 auto with_case(const CaseRequest& request, const std::atomic<bool>* stop, const Work& work)
 {
   const case_file::Config config = case_file::read_config(request.case_file, request.overrides);
-  mesh::AnyMesh mesh = mesh::read_mesh(config.mesh, case_file::find_seams(config), stop);
+  mesh::AnyMesh mesh = read_mesh(config, config.mesh, stop, request.quiet);
   return std::visit([&](auto& m) { return work(config, std::move(m)); }, mesh);
 }
 

@@ -16,6 +16,7 @@
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
+#include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/mesh_bytes.h"
 
 namespace tribound::mesh
@@ -23,8 +24,6 @@ namespace tribound::mesh
 
 namespace
 {
-
-using AnyMeshData = std::variant<MeshData<2>, MeshData<3>>;
 
 /// The first number of a result: the dimension of the mesh that follows, or one of these.
 enum Answer : std::size_t
@@ -48,13 +47,15 @@ std::string load_as_bytes(const std::filesystem::path& file)
   ByteWriter bytes;
   try
   {
+    const SimplicialMesh mesh = make_simplicial(load_gmsh(file));
     std::visit(
         [&]<int dim>(const MeshData<dim>& data)
         {
           bytes.put(dim);
+          bytes.put(mesh.notes);
           put(bytes, data);
         },
-        load_gmsh(file));
+        mesh.data);
     return bytes.take();
   }
   catch (const InputError& error)
@@ -110,18 +111,20 @@ constexpr double share_of_machine = 0.9;
       "a coarser mesh; is a mesh size or a number of nodes absurd?");
 }
 
-AnyMeshData mesh_data(const std::filesystem::path& file, std::string_view result)
+SimplicialMesh mesh_data(const std::filesystem::path& file, std::string_view result)
 {
   ByteReader bytes(result);
   std::size_t answer = refused;
   bytes.get(answer);
   if (answer == refused) throw_refusal(bytes);
   if (answer == no_memory) throw_no_memory(file);
-  const auto read = [&]<int dim>(MeshData<dim>&& data) -> AnyMeshData
+  const auto read = [&]<int dim>(MeshData<dim>&& data) -> SimplicialMesh
   {
+    std::vector<std::string> notes;
+    bytes.get(notes);
     data.source = {.file = file.string()};
     get(bytes, data);
-    return std::move(data);
+    return {std::move(data), std::move(notes)};
   };
   if (answer == 2) return read(MeshData<2>{});
   return read(MeshData<3>{});
@@ -167,7 +170,7 @@ std::string printed_errors(std::string_view output)
       "program gmsh (Debian: apt install gmsh), and the case name the .msh");
 }
 
-AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* stop, double patience)
+SimplicialMesh load(const std::filesystem::path& file, const std::atomic<bool>* stop, double patience)
 {
   const ApartOutcome outcome =
       run_apart([&] { return load_as_bytes(file); },
@@ -187,7 +190,7 @@ AnyMeshData load(const std::filesystem::path& file, const std::atomic<bool>* sto
   }
 }
 
-AnyMesh verified(AnyMeshData any, const FindSeams& find_seams)
+AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& find_seams)
 {
   return std::visit(
       [&]<int dim>(MeshData<dim>& data) -> AnyMesh
@@ -203,15 +206,19 @@ AnyMesh verified(AnyMeshData any, const FindSeams& find_seams)
 }  // namespace
 
 AnyMesh read_gmsh(const MeshFile& source, const FindSeams& find_seams, const std::atomic<bool>* stop,
-                  double patience)
+                  double patience, std::vector<std::string>* notes)
 {
   check_mesh_file(source.path, source.where);
-  return verified(load(source.path, stop, patience), find_seams);
+  SimplicialMesh mesh = load(source.path, stop, patience);
+  if (notes) *notes = std::move(mesh.notes);
+  return verified(std::move(mesh.data), find_seams);
 }
 
-AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const std::atomic<bool>* stop)
+AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const std::atomic<bool>* stop,
+                  std::vector<std::string>* notes)
 {
-  if (const auto* file = std::get_if<MeshFile>(&source)) return read_gmsh(*file, find_seams, stop);
+  if (const auto* file = std::get_if<MeshFile>(&source))
+    return read_gmsh(*file, find_seams, stop, default_patience, notes);
   if (const auto* box = std::get_if<BoxMesh>(&source))
     return box->cells.size() == 3 ? verified(box_mesh<3>(*box), find_seams)
                                   : verified(box_mesh<2>(*box), find_seams);

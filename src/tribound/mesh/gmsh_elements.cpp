@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <initializer_list>
+#include <numeric>
+#include <optional>
+#include <span>
 
 #include "tribound/mesh/gmsh_library.h"
 
@@ -13,7 +19,7 @@ int mesh_dimension(const Where& where)
 {
   for (const int dim : {3, 2})
     if (!gmsh::element_types(dim).empty()) return dim;
-  throw InputError(where, "the mesh has neither triangles nor tetrahedra",
+  throw InputError(where, "the mesh has neither plane elements nor solids",
                    "a 2D problem needs a meshed surface, a 3D problem a meshed volume; put it into a "
                    "physical group if any "
                    "groups exist: Gmsh saves only what is in a group");
@@ -22,42 +28,149 @@ int mesh_dimension(const Where& where)
 namespace
 {
 
-/// Throws unless it is the type of a simplex of order 1 or 2.
-int order_of_simplex(const Where& where, int dim, int type)
+struct NumberedType
 {
-  for (std::size_t k = 0; k < simplex_type.size(); ++k)
-    if (type == simplex_type[k][dim]) return static_cast<int>(k) + 1;
-  const auto [name, order] = gmsh::element_properties(type);
-  if (order > static_cast<int>(simplex_type.size()))
+  int number;
+  ElementType type;
+};
+
+constexpr std::array<NumberedType, 18> numbered_types = {{{1, {Shape::segment, 2}},
+                                                          {8, {Shape::segment, 3}},
+                                                          {2, {Shape::triangle, 3}},
+                                                          {9, {Shape::triangle, 6}},
+                                                          {3, {Shape::quadrilateral, 4}},
+                                                          {16, {Shape::quadrilateral, 8}},
+                                                          {4, {Shape::tetrahedron, 4}},
+                                                          {10, {Shape::quadrilateral, 9}},
+                                                          {11, {Shape::tetrahedron, 10}},
+                                                          {5, {Shape::hexahedron, 8}},
+                                                          {17, {Shape::hexahedron, 20}},
+                                                          {12, {Shape::hexahedron, 27}},
+                                                          {6, {Shape::prism, 6}},
+                                                          {18, {Shape::prism, 15}},
+                                                          {13, {Shape::prism, 18}},
+                                                          {7, {Shape::pyramid, 5}},
+                                                          {19, {Shape::pyramid, 13}},
+                                                          {14, {Shape::pyramid, 14}}}};
+
+}  // namespace
+
+std::optional<ElementType> gmsh_type(int number)
+{
+  const auto known = std::ranges::find(numbered_types, number, &NumberedType::number);
+  if (known == numbered_types.end()) return {};
+  return known->type;
+}
+
+namespace
+{
+
+using GmshEdges = std::initializer_list<std::array<int, 2>>;
+
+/// The edges of solids in the order of Gmsh's middles; those of other shapes are ordered as here.
+std::span<const std::array<int, 2>> gmsh_edges(Shape shape)
+{
+  static constexpr GmshEdges tetrahedron = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
+  static constexpr GmshEdges hexahedron = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
+                                           {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
+  static constexpr GmshEdges prism = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}};
+  static constexpr GmshEdges pyramid = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}};
+  switch (shape)
+  {
+    case Shape::tetrahedron:
+      return tetrahedron;
+    case Shape::hexahedron:
+      return hexahedron;
+    case Shape::prism:
+      return prism;
+    case Shape::pyramid:
+      return pyramid;
+    default:
+      return {};
+  }
+}
+
+/// For each quadrilateral face of ShapeTable its number among the face centres of Gmsh.
+std::span<const int> gmsh_face_centres(Shape shape)
+{
+  static constexpr std::initializer_list<int> hexahedron = {0, 5, 1, 3, 4, 2};
+  static constexpr std::initializer_list<int> prism = {0, 2, 1};
+  if (shape == Shape::hexahedron) return hexahedron;
+  if (shape == Shape::prism) return prism;
+  return {};
+}
+
+std::vector<int> node_order(const ElementType& type)
+{
+  const ShapeTable& table = table_of(type.shape);
+  std::vector<int> order(type.n_nodes);
+  std::iota(order.begin(), order.end(), 0);
+  if (!has_middles(type)) return order;
+  int place = table.n_corners;
+  for (const auto& [a, b] : gmsh_edges(type.shape))
+    order[table.n_corners + edge_number(table, a, b)] = place++;
+  const int first_centre = table.n_corners + table.n_edges;
+  if (first_centre == type.n_nodes) return order;
+  int face = first_centre;
+  for (const int centre : gmsh_face_centres(type.shape)) order[face++] = first_centre + centre;
+  return order;
+}
+
+constexpr int n_orders = 2;
+
+/// Throws unless it is a type of order 1 or 2 that is known.
+NumberedType known_type(const Where& where, int number)
+{
+  if (const std::optional<ElementType> known = gmsh_type(number)) return {number, *known};
+  const auto [name, order] = gmsh::element_properties(number);
+  if (order > n_orders)
     throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
                      "the geometry is straight-sided whatever the degree of the case, and a shape needs no "
                      "more than order 2; mesh with Mesh.ElementOrder = 1 or 2");
-  throw InputError(where, fmt::format("the mesh has elements that are not simplices ({})", name),
-                   "only triangles and tetrahedra; mesh with Mesh.RecombineAll=0 and without Recombine or "
-                   "Layers{...} with Recombine");
+  throw InputError(where, fmt::format("the mesh has elements that are not read ({})", name),
+                   "triangles, quadrilaterals, tetrahedra, hexahedra, prisms and pyramids of order 1 or 2");
 }
 
 }  // namespace
 
 // Gmsh reports the type of the first element of an entity for all elements of that shape. Reading nodes by
-// type then overruns its arrays if a second-order element comes later, so each element is looked at first.
-int mesh_order(const Where& where, int mesh_dim)
+// type then overruns its arrays if an element with more nodes comes later, so each element is looked at
+// first.
+void check_elements(const Where& where, int mesh_dim)
 {
-  int order = 0;
-  const auto look = [&](int dim, int type)
+  std::optional<NumberedType> first;
+  const auto look = [&](int number, std::optional<int> reported)
   {
-    const int found = order_of_simplex(where, dim, type);
-    if (order == 0) order = found;
-    if (found != order)
-      throw InputError(where, fmt::format("the mesh has elements of order {} and of order {}", order, found),
+    const NumberedType found = known_type(where, number);
+    if (!first) first = found;
+    const bool is_second = has_middles(found.type);
+    if (is_second != has_middles(first->type))
+      throw InputError(where,
+                       fmt::format("the mesh has elements of order {} and of order {}", is_second ? 1 : 2,
+                                   is_second ? 2 : 1),
                        "all cells and facets of one order: mesh again, with Mesh.ElementOrder = 1 or 2");
+    if (reported && *reported != number)
+      throw InputError(where,
+                       fmt::format("one entity has elements of two kinds, {} and {}",
+                                   describe(known_type(where, *reported).type), describe(found.type)),
+                       "mesh again, with Mesh.SecondOrderIncomplete = 0 or 1 for all");
   };
   for (const int dim : {mesh_dim, mesh_dim - 1})
-    for (const int type : gmsh::element_types(dim)) look(dim, type);
+    for (const int type : gmsh::element_types(dim)) look(type, {});
   for (const int dim : {mesh_dim, mesh_dim - 1})
-    for (const std::size_t element : gmsh::elements(simplex_type[order - 1][dim]))
-      look(dim, gmsh::element_type(element));
-  return order;
+    for (const int type : gmsh::element_types(dim))
+      for (const std::size_t element : gmsh::elements(type)) look(gmsh::element_type(element), type);
+}
+
+std::vector<GmshType> gmsh_types(const Where& where, int dim)
+{
+  std::vector<GmshType> types;
+  for (const int number : gmsh::element_types(dim))
+  {
+    const NumberedType known = known_type(where, number);
+    types.push_back({number, known.type, node_order(known.type)});
+  }
+  return types;
 }
 
 }  // namespace tribound::mesh

@@ -3,21 +3,34 @@
 /// @file gmsh_elements.h
 /// The elements of the model that Gmsh has loaded.
 
-#include <array>
+#include <optional>
+#include <vector>
 
 #include "tribound/base/error.h"
+#include "tribound/mesh/import/element_type.h"
 
 namespace tribound::mesh
 {
 
-/// Gmsh's numbers of simplices, [order - 1][dimension].
-inline constexpr std::array<std::array<int, 4>, 2> simplex_type = {{{15, 1, 2, 4}, {15, 8, 9, 11}}};
+/// A type of elements by Gmsh's number.
+struct GmshType
+{
+  int number;
+  ElementType type;
+  std::vector<int> order;  ///< place in Gmsh's list of nodes of each node of ElementType
+};
+
+/// The type with this number of Gmsh's; nothing if it is not read.
+[[nodiscard]] std::optional<ElementType> gmsh_type(int number);
 
 /// 3 if there are solids of any shape, else 2. Throws InputError where there are no surfaces either.
 [[nodiscard]] int mesh_dimension(const Where& where);
 
-/// The order of the cells and of their facets, 1 or 2. Throws InputError if they are no simplices, of
-/// different orders, or of higher order.
-[[nodiscard]] int mesh_order(const Where& where, int mesh_dim);
+/// Throws InputError where cells and facets are of different orders, of order 3 or higher, or of unknown
+/// shape.
+void check_elements(const Where& where, int mesh_dim);
+
+/// The types of the elements of this dimension, which are checked.
+[[nodiscard]] std::vector<GmshType> gmsh_types(const Where& where, int dim);
 
 }  // namespace tribound::mesh

@@ -274,14 +274,14 @@ std::vector<std::size_t> elements(int type)
   return tags.values();
 }
 
-std::vector<std::size_t> element_nodes(int type, int entity)
+Elements elements_in(int type, int entity)
 {
   Answer<std::size_t> tags;
   Answer<std::size_t> nodes;
   call<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType", type, &tags.data,
                                                  &tags.size, &nodes.data, &nodes.size, entity, std::size_t{0},
                                                  std::size_t{1});
-  return nodes.values();
+  return {tags.values(), nodes.values()};
 }
 
 }  // namespace tribound::mesh::gmsh

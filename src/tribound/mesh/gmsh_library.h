@@ -74,7 +74,13 @@ struct ElementType
 [[nodiscard]] int element_type(std::size_t element);
 /// Tags of the elements of a type, without reading their nodes.
 [[nodiscard]] std::vector<std::size_t> elements(int type);
-/// Tags of the nodes of the elements of a type, element by element.
-[[nodiscard]] std::vector<std::size_t> element_nodes(int type, int entity);
+struct Elements
+{
+  std::vector<std::size_t> tags;
+  std::vector<std::size_t> nodes;  ///< tags, element by element
+};
+
+/// The elements of a type in an entity.
+[[nodiscard]] Elements elements_in(int type, int entity);
 
 }  // namespace tribound::mesh::gmsh

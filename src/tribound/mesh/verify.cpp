@@ -162,34 +162,34 @@ void check_arrays(const MeshData<dim>& data)
 }
 
 template <int dim>
+std::optional<ShapeFault> shape_fault(const std::array<Point<dim>, dim + 1>& corners)
+{
+  const double h = diameter(corners);
+  if (h < smallest_diameter || h > largest_coordinate)
+    return ShapeFault{fmt::format("has the diameter {:.3g}, whose powers are not in the range of numbers", h),
+                      "take other units of length"};
+  const double det = determinant(corners);
+  const double scale = dim == 2 ? h * h : h * h * h;
+  if (det > smallest_shape * scale) return {};
+  if (det < -smallest_shape * scale)
+    return ShapeFault{
+        fmt::format("is inverted: its vertices are in {} order", dim == 2 ? "clockwise" : "left-handed"),
+        dim == 2 ? "list the vertices counterclockwise"
+                 : "list the vertices such that the fourth lies on the side of the first three from "
+                   "which they run counterclockwise"};
+  return ShapeFault{fmt::format("is degenerate: its {} is {:.3g} for a diameter of {:.3g}",
+                                dim == 2 ? "area" : "volume", std::abs(det) / factorial<dim>, h),
+                    "mesh again with a better size, or remove duplicate points"};
+}
+
+template <int dim>
 void check_shapes(const MeshData<dim>& data)
 {
   for (std::size_t c = 0; c < data.cells.size(); ++c)
-  {
-    const auto points = points_of<dim>(data.vertices, data.cells[c]);
-    const double h = diameter(points);
-    if (h < smallest_diameter || h > largest_coordinate)
+    if (const auto fault = shape_fault<dim>(points_of<dim>(data.vertices, data.cells[c])))
       throw InputError(data.source,
-                       fmt::format("{} has the diameter {:.3g}, whose powers are not in the range of numbers",
-                                   describe_cell(data, static_cast<Index>(c)), h),
-                       "take other units of length");
-    const double det = determinant(points);
-    const double scale = dim == 2 ? h * h : h * h * h;
-    if (det > smallest_shape * scale) continue;
-    if (det < -smallest_shape * scale)
-      throw InputError(
-          data.source,
-          fmt::format("{} is inverted: its vertices are in {} order",
-                      describe_cell(data, static_cast<Index>(c)), dim == 2 ? "clockwise" : "left-handed"),
-          dim == 2 ? "list the vertices counterclockwise"
-                   : "list the vertices such that the fourth lies on the side of the first three from "
-                     "which they run counterclockwise");
-    throw InputError(data.source,
-                     fmt::format("{} is degenerate: its {} is {:.3g} for a diameter of {:.3g}",
-                                 describe_cell(data, static_cast<Index>(c)), dim == 2 ? "area" : "volume",
-                                 std::abs(det) / factorial<dim>, h),
-                     "mesh again with a better size, or remove duplicate points");
-  }
+                       fmt::format("{} {}", describe_cell(data, static_cast<Index>(c)), fault->problem),
+                       fault->hint);
 }
 
 template <int dim>
@@ -246,6 +246,8 @@ void check_vertices(const MeshData<dim>& data, const Topology<dim>& topology, st
 
 template void check_arrays<2>(const MeshData<2>&);
 template void check_arrays<3>(const MeshData<3>&);
+template std::optional<ShapeFault> shape_fault<2>(const std::array<Point<2>, 3>&);
+template std::optional<ShapeFault> shape_fault<3>(const std::array<Point<3>, 4>&);
 template void check_shapes<2>(const MeshData<2>&);
 template void check_shapes<3>(const MeshData<3>&);
 template void check_facets<2>(const MeshData<2>&, const Topology<2>&);

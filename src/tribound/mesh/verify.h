@@ -4,7 +4,10 @@
 /// The steps of the verification of a mesh, in the order in which Mesh's constructor takes them: each relies
 /// on what the steps before have verified. All throw InputError naming the place with its coordinates.
 
+#include <array>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tribound/mesh/interfaces.h"
@@ -19,7 +22,18 @@ namespace tribound::mesh
 template <int dim>
 void check_arrays(const MeshData<dim>& data);
 
-/// No cell is inverted or degenerate: det J > 1e-12 h_T^dim.
+struct ShapeFault
+{
+  std::string problem;  ///< "is inverted: ..."
+  std::string hint;
+};
+
+/// Why a cell with these corners has no usable reference map; nothing if it has one: det J > 1e-12 h_T^dim,
+/// and the powers of h_T are numbers.
+template <int dim>
+[[nodiscard]] std::optional<ShapeFault> shape_fault(const std::array<Point<dim>, dim + 1>& corners);
+
+/// No cell has a shape_fault().
 template <int dim>
 void check_shapes(const MeshData<dim>& data);
 

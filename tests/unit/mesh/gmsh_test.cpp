@@ -216,6 +216,23 @@ TEST(Gmsh, PointsOfTheGeometryThatNoCellUsesAreDropped)
   expect_plane(mesh::read_gmsh(saved(directory, plane_geo, 4.1, false, true)));
 }
 
+TEST(Gmsh, NodesThatNoCellUsesAreDroppedAndCounted)
+{
+  const Directory directory;
+  const mesh::MeshFile file = directory.write(
+      "block.msh",
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 1 0\n1 0 0 0 1 1 0 0 0\n$EndEntities\n"
+      "$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n7 8 0\n$EndNodes\n"
+      "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n");
+  std::vector<std::string> notes;
+  const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(file, {}, nullptr, &notes));
+  EXPECT_EQ(mesh.n_vertices(), 3);
+  EXPECT_THAT(
+      notes,
+      testing::ElementsAre(testing::HasSubstr(
+          "block.msh: 1 of 4 nodes belong to no element and are left out, such as node 4 at (7, 8, 0)")));
+}
+
 TEST(Gmsh, SparseNodeTagsAreFine)
 {
   const Directory directory;

@@ -1,0 +1,17 @@
+#pragma once
+
+/// @file node_sets.h
+/// Node sets as boundaries.
+
+#include "tribound/mesh/import/imported_mesh.h"
+
+namespace tribound::mesh
+{
+
+/// Turns the node sets of a mesh into facet sets: the outer facets of cells all of whose nodes, middles too,
+/// are in the set. Left out, with a note: sets without such a facet, sets that have all nodes of a body, and
+/// sets with the same facets as a facet set or an earlier node set. Throws InputError for a set without
+/// facets that should have some, and for a name that a facet set with other facets has.
+void add_node_sets(ImportedMesh& mesh, std::vector<std::string>& notes);
+
+}  // namespace tribound::mesh
