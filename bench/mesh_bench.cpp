@@ -2,9 +2,11 @@
 /// overlays of boundaries.
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <gmsh.h>
 
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -15,6 +17,8 @@
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/box.h"
 #include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/inp.h"
+#include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/mesh.h"
 
 namespace
@@ -128,6 +132,46 @@ void read_file(benchmark::State& state)
   std::filesystem::remove(source.path);
 }
 
+/// A cube of n^3 hexahedra as a deck, with regions, a surface and a node set.
+std::filesystem::path write_large_deck(int n)
+{
+  auto file = std::filesystem::temp_directory_path() / "tribound_mesh_bench.inp";
+  std::FILE* out = std::fopen(file.c_str(), "w");
+  const auto node = [n](int i, int j, int k) { return 1 + i + (n + 1) * (j + (n + 1) * k); };
+  std::fputs("*NODE, NSET=Nall\n", out);
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i)
+        fmt::print(out, "{}, {:.9e}, {:.9e}, {:.9e}\n", node(i, j, k), i / 3.0, j / 3.0, k / 3.0);
+  std::fputs("*ELEMENT, TYPE=C3D8, ELSET=Eall\n", out);
+  int element = 0;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+      {
+        fmt::print(out, "{}", ++element);
+        for (const int z : {k, k + 1})
+          fmt::print(out, ", {}, {}, {}, {}", node(i, j, z), node(i + 1, j, z), node(i + 1, j + 1, z),
+                     node(i, j + 1, z));
+        std::fputs("\n", out);
+      }
+  fmt::print(out, "*ELSET, ELSET=Ebottom, GENERATE\n1, {}\n*SURFACE, NAME=bottom\nEbottom, S1\n", n * n);
+  fmt::print(out, "*NSET, NSET=top, GENERATE\n{}, {}\n", node(0, 0, n), node(n, n, n));
+  std::fclose(out);
+  return file;
+}
+
+/// Reading a deck of hexahedra and cutting them into tetrahedra, without the verification of the mesh.
+void read_deck(benchmark::State& state)
+{
+  const std::filesystem::path file = write_large_deck(static_cast<int>(state.range(0)));
+  std::size_t n_cells = 0;
+  for (auto _ : state)
+    n_cells = std::get<mesh::MeshData<3>>(mesh::make_simplicial(mesh::read_inp(file)).data).cells.size();
+  state.counters["cells"] = static_cast<double>(n_cells);
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 
 BENCHMARK(topology<2>)->Unit(benchmark::kMillisecond);
@@ -148,5 +192,6 @@ BENCHMARK(read_file)
     ->ArgsProduct({{22, 41}, {0, 1}})
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(read_deck)->Arg(100)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

@@ -16,6 +16,7 @@
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
+#include "tribound/mesh/import/inp.h"
 #include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/mesh_bytes.h"
 
@@ -218,7 +219,13 @@ AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const s
                   std::vector<std::string>* notes)
 {
   if (const auto* file = std::get_if<MeshFile>(&source))
-    return read_gmsh(*file, find_seams, stop, default_patience, notes);
+  {
+    check_mesh_file(file->path, file->where);
+    if (file->path.extension() != ".inp") return read_gmsh(*file, find_seams, stop, default_patience, notes);
+    SimplicialMesh mesh = make_simplicial(read_inp(file->path));
+    if (notes) *notes = std::move(mesh.notes);
+    return verified(std::move(mesh.data), find_seams);
+  }
   if (const auto* box = std::get_if<BoxMesh>(&source))
     return box->cells.size() == 3 ? verified(box_mesh<3>(*box), find_seams)
                                   : verified(box_mesh<2>(*box), find_seams);

@@ -158,13 +158,13 @@ void check_mesh_file(const std::filesystem::path& file, const Where& where)
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("does not exist", "the path is relative to the case file");
   const std::string suffix = file.extension().string();
-  if (suffix != ".msh" && suffix != ".geo")
-    fail("is neither a .msh nor a .geo",
+  if (suffix != ".msh" && suffix != ".geo" && suffix != ".inp")
+    fail("is neither a .msh nor a .geo nor an .inp",
          "a .geo of one line reads other formats: Merge \"part.unv\"; keeps the groups, .vtk, .bdf and .mesh "
          "lose "
          "their names, .step and .iges are geometries to be meshed");
-  if (std::filesystem::is_directory(file, error)) fail("is a directory", "name the .msh or .geo file in it");
-  if (std::filesystem::is_empty(file, error)) fail("is empty", "save the mesh again with Gmsh");
+  if (std::filesystem::is_directory(file, error)) fail("is a directory", "name the mesh file in it");
+  if (std::filesystem::is_empty(file, error)) fail("is empty", "save the mesh again");
   std::ifstream stream(file, std::ios::binary);
   const int first = stream.get();
   stream.seekg(-1, std::ios::end);

@@ -34,7 +34,7 @@ class GmshSession
 };
 
 /// Throws InputError at `where` unless the file can be read and is, by its suffix and its first characters, a
-/// .msh or a .geo.
+/// .msh, a .geo or an .inp.
 void check_mesh_file(const std::filesystem::path& file, const Where& where);
 
 }  // namespace tribound::mesh
