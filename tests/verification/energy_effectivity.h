@@ -80,6 +80,8 @@ class RicherReference
     for (std::size_t i = 0; i < error.size(); ++i) error[i] -= u_[i];
     return std::sqrt(contact::stress_norms<dim>(form_.problem(), space_, error).energy);
   }
+  [[nodiscard]] const contact::NitscheForm<dim>& form() const { return form_; }
+  [[nodiscard]] std::span<const double> u() const { return u_; }
 
  private:
   const fem::LagrangeSpace<dim>& coarse_;
