@@ -249,6 +249,10 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
     if (const std::optional<double> stored = last.figures.spring_energy)
       text += line("springs",
                    fmt::format("(K (u - u_0), u - u_0) = {:.8g}{}", *stored, facts.behind(UnitOf::energy)));
+    for (const io::RigidFigures& part : last.figures.rigid_parts)
+      text += line("rigid", fmt::format("{}: displacement ({:.8g}){}, rotation {:.8g}", part.boundary,
+                                        fmt::join(part.displacement, ", "), facts.behind(UnitOf::length),
+                                        fmt::join(part.rotation, ", ")));
     text += certificate_text(run);
     text += warnings_text(run.warnings);
   }

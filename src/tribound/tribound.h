@@ -57,7 +57,7 @@
 #include "tribound/contact/nitsche/segment_values.h"
 #include "tribound/contact/pairing/pairing.h"
 #include "tribound/contact/pairing/polygon.h"
-#include "tribound/contact/support/holding_points.h"
+#include "tribound/contact/support/holds.h"
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/fem/bernstein.h"
 #include "tribound/fem/degree.h"

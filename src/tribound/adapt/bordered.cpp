@@ -41,9 +41,7 @@ algebra::SolverOptions of_whole_matrix(algebra::SolverOptions options)
 
 template <int dim>
 Bordered<dim>::Bordered(Form form, const algebra::SolverOptions& solver)
-    : form_(std::move(form)),
-      equilibrium_(solve::sparse_equilibrium<dim>(*form_, solve::external_forces<dim>(*form_),
-                                                  of_whole_matrix(solver)))
+    : form_(std::move(form)), equilibrium_(solve::whole_equilibrium<dim>(*form_, of_whole_matrix(solver)))
 {
 }
 
@@ -54,9 +52,7 @@ template <int dim>
 Bordered<dim>::State::State(Form at_t, PathPoint& point, const PathMeasure<dim>& of_path)
     : form(std::move(at_t))
 {
-  const fem::Constraints& constraints = form->constraints();
-  for (std::size_t i = 0; i < point.u.size(); ++i)
-    if (constraints.fixed[i]) point.u[i] = constraints.values[i];
+  form->prescribe(point.u);
   residual = contact::residual<dim>(*form, point.u, form->traction(point.u));
   norm = form->space().norm(residual);
   measure = of_path.value(*form, point.u);
@@ -68,7 +64,7 @@ void Bordered<dim>::move(const State& now, const State& then, const PathMeasure<
                          const BorderedOptions& options, PathPoint& point, solve::NewtonStep& step)
 {
   const contact::NitscheForm<dim>& form = *now.form;
-  const std::vector<double> tangent = form.contact_tangent_values(contact::Linearisation::newton, point.u);
+  const solve::Linearised<dim> tangent{contact::Linearisation::newton, point.u};
   const auto solve = [&](std::span<const double> r, std::vector<double>& d)
   {
     d.assign(r.size(), 0.0);
@@ -106,6 +102,7 @@ std::string Bordered<dim>::operator()(const FormAt& form_at, const PathMeasure<d
   {
     const Clock::time_point begin = Clock::now();
     const State now(form_at(point.t), point, measure);
+    equilibrium_->follow(*now.form);
     const double tolerance = std::max(options.tolerance * options.force, equilibrium_->round_off(point.u));
     if (k > 0)
     {

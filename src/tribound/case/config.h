@@ -59,6 +59,16 @@ struct SpringConfig
   Where where;
 };
 
+/// `rigid` of a boundary.
+struct RigidConfig
+{
+  std::vector<problem::Field> force;   ///< empty: 0
+  std::vector<problem::Field> moment;  ///< empty: 0
+  std::vector<double> point;           ///< empty: none given
+  std::vector<std::string> fixed;      ///< motions: "x", ..., "rz"
+  Where where;
+};
+
 /// One [boundary.<name>] table.
 struct BoundaryConfig
 {
@@ -70,6 +80,7 @@ struct BoundaryConfig
   std::optional<problem::Contact> contact;
   GeometryConfig geometry;  ///< of the contact
   Where where;
+  std::optional<RigidConfig> rigid;
 };
 
 /// One [[contact]] table.

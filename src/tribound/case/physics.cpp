@@ -86,6 +86,19 @@ const Table& spring_table()
   return table;
 }
 
+constexpr auto fixed_hint = "translations x, y, z and rotations rx, ry, rz; in 2D x, y and rz";
+
+const Table& rigid_table()
+{
+  static const Table table{
+      .name = "boundary.NAME.rigid",
+      .keys = {{"force", data("one number or formula of t per dimension, such as [0, -100]")},
+               {"moment", datum() | array_of(datum(), 3, "in 3D one number or formula of t per axis")},
+               {"point", numbers()},
+               {"fixed", array_of(one_of({"x", "y", "z", "rx", "ry", "rz"}), 1, fixed_hint)}}};
+  return table;
+}
+
 const Table& boundary_table()
 {
   static const Table table{
@@ -101,13 +114,17 @@ const Table& boundary_table()
                              keys_of(spring_table())},
               {"contact", keys_of(obstacle_contact_table())},
               {"interface", keys_of(obstacle_interface_table())},
-              {"slider", datum()}} +
+              {"slider", datum()},
+              {"rigid", keys_of(rigid_table())}} +
           slider_geometry_keys(),
       .relations = {{.key = "contact",
-                     .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider"}},
+                     .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider",
+                                  "rigid"}},
                     {.key = "interface",
-                     .excludes = {"displacement", "traction", "pressure", "spring", "slider"}},
-                    {.key = "slider", .excludes = {"displacement", "traction", "pressure", "spring"}},
+                     .excludes = {"displacement", "traction", "pressure", "spring", "slider", "rigid"}},
+                    {.key = "slider",
+                     .excludes = {"displacement", "traction", "pressure", "spring", "rigid"}},
+                    {.key = "rigid", .excludes = {"displacement", "traction", "pressure", "spring"}},
                     {.key = "shape", .needs = {"slider"}},
                     {.key = "normal", .needs = {"slider"}}},
       .refused = point_loads()};
@@ -172,6 +189,22 @@ void read_spring(const TableReader& of_boundary, BoundaryConfig& boundary)
   if (!table.has("normal") && !table.has("tangential"))
     throw InputError(node.where, "has no stiffness",
                      "normal = 1e7, tangential = 1e6, or spring = 1e7 for both");
+}
+
+/// A part that moves as a rigid body.
+void read_rigid(const Node& node, BoundaryConfig& boundary)
+{
+  const TableReader table(node, rigid_table());
+  RigidConfig& rigid = boundary.rigid.emplace();
+  rigid.where = node.where;
+  table.read("force", rigid.force);
+  const Node* moment = table.find("moment");
+  if (moment != nullptr && !std::holds_alternative<Node::Array>(moment->value))
+    table.read("moment", rigid.moment.emplace_back());
+  else
+    table.read("moment", rigid.moment);
+  table.read("point", rigid.point);
+  table.read("fixed", rigid.fixed);
 }
 
 /// The sides: slave and master, or a joint.
@@ -239,6 +272,9 @@ void check_boundary(const TableReader& table, const BoundaryConfig& boundary)
 {
   const auto fail = [&](std::string_view key, const std::string& problem, const std::string& hint)
   { throw InputError(table.find(key)->where, problem, hint); };
+  if (const Node* other = table.has("rigid") ? table.excluded_by("rigid") : nullptr)
+    throw InputError(other->where, "stands beside rigid on the same boundary",
+                     "forces and moments in the table rigid, and what cannot move in its list fixed");
   for (const std::string_view kind : {"contact", "interface", "slider"})
     if (const Node* other = table.excluded_by(kind))
       throw InputError(
@@ -273,8 +309,8 @@ BoundaryConfig read_boundary(const Entry& entry)
   const TableReader table(entry.node, boundary_table());
   if (std::get<Node::Table>(entry.node.value).empty())
     throw InputError(entry.where, "nothing is given on this boundary",
-                     "displacement, traction, pressure, spring, contact, interface or slider; traction-free "
-                     "is traction = [0, 0]");
+                     "displacement, traction, pressure, spring, contact, interface, slider or rigid; "
+                     "traction-free is traction = [0, 0]");
   BoundaryConfig boundary;
   boundary.name = entry.name;
   boundary.where = entry.where;
@@ -290,6 +326,7 @@ BoundaryConfig read_boundary(const Entry& entry)
     read_obstacle(*contact, boundary);
   }
   if (interface != nullptr) read_memory(*interface, boundary);
+  if (const Node* rigid = table.find("rigid")) read_rigid(*rigid, boundary);
   if (table.has("slider") && !boundary.contact) read_slider(table, boundary);
   check_boundary(table, boundary);
   return boundary;

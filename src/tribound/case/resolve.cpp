@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "tribound/adapt/transfer.h"
@@ -59,6 +61,47 @@ problem::ContactPair<dim> resolve(const ContactConfig& config)
   return pair;
 }
 
+/// Refuses formulas of the place: forces and moments act on the whole part.
+void require_uniform(std::span<const problem::Field> loads)
+{
+  for (const problem::Field& load : loads)
+    if (!load.is_constant())
+      throw InputError(load.where(), "depends on the place, but acts on the part as a whole",
+                       "a number, or a formula of t");
+}
+
+template <int dim>
+problem::RigidPart<dim> resolve(const RigidConfig& config)
+{
+  constexpr std::array<std::string_view, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
+  problem::RigidPart<dim> part;
+  const auto n_moments = part.moment.size();
+  require_uniform(config.force);
+  require_uniform(config.moment);
+  if (!config.force.empty()) part.force = vector_of<dim>(config.force, inside(config.where, "force"));
+  if (!config.moment.empty() && config.moment.size() != n_moments)
+    throw InputError(inside(config.where, "moment"),
+                     fmt::format("has {} components in a case in {}D", config.moment.size(), dim),
+                     dim == 2 ? "one number, positive from x to y" : "three: about the axes x, y and z");
+  std::ranges::copy(config.moment, part.moment.begin());
+  for (const std::string& name : config.fixed)
+  {
+    const auto i = std::ranges::find(names, name) - names.begin();
+    if (dim == 2 && i != 0 && i != 1 && i != 5)
+      throw InputError(inside(config.where, "fixed"), fmt::format("\"{}\" is no motion in 2D", name),
+                       "x, y and rz");
+    part.fixed[dim == 2 && i == 5 ? 2 : i] = true;
+  }
+  if (std::ranges::all_of(std::span(part.fixed).subspan(dim), std::identity())) return part;
+  if (config.point.empty())
+    throw InputError(config.where,
+                     "has no point, through which the force acts and about which the part turns",
+                     "point = [...], or fixed with all rotations");
+  check_length<dim>(config.point.size(), inside(config.where, "point"));
+  part.point = Point<dim>(config.point.data());
+  return part;
+}
+
 template <int dim>
 problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
 {
@@ -67,6 +110,7 @@ problem::BoundaryCondition<dim> resolve(const BoundaryConfig& config)
   boundary.where = config.where;
   boundary.contact = config.contact;
   if (config.contact) check_dimension<dim>(*config.contact);
+  if (config.rigid) boundary.rigid = resolve<dim>(*config.rigid);
   if (config.pressure) boundary.pressure = in_dimension<dim>(*config.pressure);
   if (!config.traction.empty())
     boundary.traction = vector_of<dim>(config.traction, inside(config.where, "traction"));

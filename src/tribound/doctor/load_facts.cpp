@@ -59,7 +59,7 @@ struct BoundaryLoad
   double measure = 0;
 };
 
-/// The integral of g_N; sets the largest mean of |g_N| over a boundary.
+/// The integral of g_N and the forces on rigid parts; sets the largest mean of their sizes over a boundary.
 template <int dim>
 Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
@@ -71,6 +71,8 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   for (std::size_t k = 0; k < mesh.boundary().size(); ++k)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
+    if (form.problem().boundary(facet.tag).rigid)
+      loads[facet.tag].measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
     form.data().traction(k, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
@@ -79,6 +81,15 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
       loads[facet.tag].magnitude += dx * g[q].norm();
       loads[facet.tag].measure += dx;
     }
+  }
+  for (std::size_t tag = 0; tag < loads.size(); ++tag)
+  {
+    const auto& part = form.problem().boundary(static_cast<int>(tag)).rigid;
+    if (!part) continue;
+    Point<dim> force;
+    for (int a = 0; a < dim; ++a) force[a] = part->force[a](part->point);
+    resultant += force;
+    loads[tag].magnitude = force.norm();
   }
   for (const BoundaryLoad& load : loads)
     if (load.measure > 0)
@@ -149,7 +160,7 @@ double displacement_range(const contact::NitscheForm<dim>& form)
   const fem::Constraints& constraints = form.constraints();
   const std::span<const contact::SpringFacet<dim>> springs = form.springs().facets();
   const auto fixes = [&](const contact::SpringFacet<dim>& facet, int component)
-  { return form.problem().boundary(form.space().mesh().boundary()[facet.number].tag).fixes(component); };
+  { return form.problem().boundary(form.space().mesh().boundary()[facet.number].tag).clamps(component); };
   const bool has_zero = form.problem().has_contact() || !springs.empty();
   const double start = has_zero ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   double range = 0;
@@ -228,7 +239,7 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   facts.body_stress = facts.largest_body_force * facts.size;
   facts.has_springs = problem.has_springs();
   facts.displacement_strain = displacement_range(form) / facts.size;
-  if (!problem.has_contact() && std::ranges::none_of(problem.boundaries(), &Condition<dim>::fixes_any))
+  if (!problem.has_contact() && std::ranges::none_of(problem.boundaries(), &Condition<dim>::clamps_any))
     facts.spring_shift = shift_on(form.springs(), resultant) / facts.size;
   for (const contact::ContactPoint<dim>& point : form.contact_points())
     facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);

@@ -31,7 +31,7 @@ FixedVertices vertices_on_displacement_boundaries(const problem::Problem<dim>& p
 {
   FixedVertices boundaries;
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
-    if (problem.boundary(facet.tag).fixes_any())
+    if (problem.boundary(facet.tag).clamps_any())
       for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
         boundaries[v].insert(facet.tag);
   return boundaries;
@@ -46,7 +46,7 @@ std::optional<double> fixed_normal_displacement(const problem::BoundaryCondition
   double normal = 0;
   for (int c = 0; c < dim; ++c)
   {
-    if (condition.fixes(c))
+    if (condition.clamps(c))
       normal += n[c] * (*condition.displacement[c])(x);
     else if (std::abs(n[c]) > negligible)
       return std::nullopt;
@@ -77,7 +77,7 @@ void add(OverconstrainedCorner& corner, const Meeting<dim>& meeting)
   corner.normal = meeting.normal;
   corner.gap = gap;
   corner.sticks = cone(meeting.contact.contact->law).resists_sliding();
-  for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.fixes(c);
+  for (int c = 0; c < dim; ++c) corner.sticks = corner.sticks && meeting.displacement.clamps(c);
 }
 
 /// Per boundary number, the mean normal of an obstacle or slave whose segments are within 10 degrees of it.

@@ -199,11 +199,11 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
       [&](const problem::BoundaryCondition<dim>& boundary, int a, Index node, const Point<dim>& x)
   {
     const Index dof = dim * node + a;
-    const double value = (*boundary.displacement[a])(x);
+    const double value = boundary.prescribed(a)(x);
     const double known = constraints.values[dof];
     if (constraints.fixed[dof] && std::abs(value - known) > tolerance + 1e-9 * std::abs(known))
       throw InputError(
-          boundary.displacement[a]->where(),
+          boundary.rigid ? boundary.where : boundary.displacement[a]->where(),
           fmt::format("is {:.9g} at the point ({:.9g}), where boundary \"{}\" prescribes {:.9g}", value,
                       fmt::join(x.data(), x.data() + dim, ", "), fixing_boundary(problem, space, node, a),
                       known),

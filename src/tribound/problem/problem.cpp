@@ -128,7 +128,15 @@ bool Region<dim>::has_initial_stress() const
 template <int dim>
 bool BoundaryCondition<dim>::fixes_any() const
 {
-  return std::ranges::any_of(displacement, [](const auto& component) { return component.has_value(); });
+  return rigid ||
+         std::ranges::any_of(displacement, [](const auto& component) { return component.has_value(); });
+}
+
+template <int dim>
+const Field& BoundaryCondition<dim>::prescribed(int component) const
+{
+  static const Field zero(0.0);
+  return rigid ? zero : *displacement[component];
 }
 
 template <int dim>
@@ -144,28 +152,28 @@ Tensor<dim> BoundaryCondition<dim>::on_free(Tensor<dim> stiffness) const
 }
 
 template <int dim>
-Tensor<dim> BoundaryCondition<dim>::fixed() const
+Tensor<dim> BoundaryCondition<dim>::clamped() const
 {
   Tensor<dim> result = Tensor<dim>::Zero();
   for (int a = 0; a < dim; ++a)
-    if (fixes(a)) result(a, a) = 1;
+    if (clamps(a)) result(a, a) = 1;
   return result;
 }
 
 template <int dim>
 Tensor<dim> BoundaryCondition<dim>::held(const Point<dim>& x, const Point<dim>& n) const
 {
-  if (!spring) return fixed();
+  if (!spring) return clamped();
   const auto acts = [&](const Field& k) { return k(x) > 0 ? 1.0 : 0.0; };
-  return fixed() + on_free(spring_matrix<dim>(acts(spring->normal), acts(spring->tangential), n));
+  return clamped() + on_free(spring_matrix<dim>(acts(spring->normal), acts(spring->tangential), n));
 }
 
 template <int dim>
 Tensor<dim> BoundaryCondition<dim>::acting(const Point<dim>& n) const
 {
-  if (!spring) return fixed();
+  if (!spring) return clamped();
   const auto may_act = [](const Field& k) { return k.is_zero() ? 0.0 : 1.0; };
-  return fixed() + on_free(spring_matrix<dim>(may_act(spring->normal), may_act(spring->tangential), n));
+  return clamped() + on_free(spring_matrix<dim>(may_act(spring->normal), may_act(spring->tangential), n));
 }
 
 template <int dim>
@@ -315,6 +323,12 @@ bool Problem<dim>::has_springs() const
 }
 
 template <int dim>
+bool Problem<dim>::has_rigid_parts() const
+{
+  return std::ranges::any_of(boundaries_, [](const auto& boundary) { return boundary.rigid.has_value(); });
+}
+
+template <int dim>
 bool Problem<dim>::body_force_is_zero(int region) const
 {
   return std::ranges::all_of(body_force(region), &Field::is_zero);
@@ -403,6 +417,11 @@ void Problem<dim>::for_each_datum(Self& problem, const Visit& visit)
       if (component) visit(*component);
     for (auto& component : boundary.traction) visit(component);
     if (boundary.pressure) visit(*boundary.pressure);
+    if (boundary.rigid)
+    {
+      for (auto& component : boundary.rigid->force) visit(component);
+      for (auto& component : boundary.rigid->moment) visit(component);
+    }
     if (!boundary.spring) continue;
     visit(boundary.spring->normal);
     visit(boundary.spring->tangential);

@@ -17,6 +17,7 @@
 #include "tribound/problem/field.h"
 #include "tribound/problem/material.h"
 #include "tribound/problem/normal_field.h"
+#include "tribound/problem/rigid_part.h"
 #include "tribound/problem/spring.h"
 #include "tribound/problem/water.h"
 
@@ -110,11 +111,21 @@ struct BoundaryCondition
   std::optional<Spring<dim>> spring;                   ///< on the free components
   std::optional<Contact> contact;                      ///< Gamma_C
   Where where;                                         ///< for messages
+  std::optional<RigidPart<dim>> rigid = {};            ///< every component is fixed, up to its motion
 
-  [[nodiscard]] bool fixes(int component) const { return displacement[component].has_value(); }
+  /// Whether the component is prescribed, on a rigid part up to its motion.
+  [[nodiscard]] bool fixes(int component) const { return rigid || displacement[component]; }
   [[nodiscard]] bool fixes_any() const;
-  /// Whether displacement or a spring holds anything here.
-  [[nodiscard]] bool holds_any() const { return fixes_any() || spring.has_value(); }
+  /// Whether all functions compared, whose rigid parts move, vanish in the component.
+  [[nodiscard]] bool clamps(int component) const { return !rigid && displacement[component]; }
+  [[nodiscard]] bool clamps_any() const { return !rigid && fixes_any(); }
+  /// u_D in a component that is fixed; on a rigid part 0.
+  [[nodiscard]] const Field& prescribed(int component) const;
+  /// Whether displacement, a spring or what guides a rigid part holds anything here.
+  [[nodiscard]] bool holds_any() const
+  {
+    return rigid ? rigid->fixes_any() : fixes_any() || spring.has_value();
+  }
   /// Whether the norm of the residual has the trace here: on obstacles and springs.
   [[nodiscard]] bool is_in_norm() const { return contact.has_value() || spring.has_value(); }
   /// K without the components that are fixed.
@@ -124,8 +135,8 @@ struct BoundaryCondition
   [[nodiscard]] Tensor<dim> held(const Point<dim>& x, const Point<dim>& n) const;
   /// The same wherever the spring may act on a facet: nothing here does work in motions with M z = 0.
   [[nodiscard]] Tensor<dim> acting(const Point<dim>& n) const;
-  /// The diagonal matrix with 1 for components that are fixed.
-  [[nodiscard]] Tensor<dim> fixed() const;
+  /// The diagonal matrix with 1 for components that are clamped.
+  [[nodiscard]] Tensor<dim> clamped() const;
   /// Whether g_N can be non-zero.
   [[nodiscard]] bool is_loaded() const;
   /// g_N at x with outward unit normal n; components that are fixed are 0.
@@ -199,6 +210,7 @@ class Problem
   /// That of K u_0.
   [[nodiscard]] int spring_load_degree() const;
   [[nodiscard]] bool has_springs() const;
+  [[nodiscard]] bool has_rigid_parts() const;
   /// Whether f vanishes identically in the region.
   [[nodiscard]] bool body_force_is_zero(int region) const;
   /// sigma_0 in the region at x: sigma(u) = C eps(u) + sigma_0.

@@ -117,10 +117,10 @@ class CondensedEquilibrium final : public Equilibrium<dim>
     return norm(solve::round_off(diagonal_, condensed_.near(x)));
   }
 
-  algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r, double tolerance,
+  algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r, double tolerance,
                              std::span<double> d, const algebra::ResidualTest& /*small_enough*/) override
   {
-    contact_.values.assign(contact.begin(), contact.end());
+    contact_.values = contact.tangent(*form_);
     std::ranges::copy(condensed_.solve(contact_, r, tolerance), d.begin());
     return {.factorised = !std::exchange(used_, true)};
   }

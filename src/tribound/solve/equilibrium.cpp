@@ -18,11 +18,10 @@ namespace tribound::solve
 template <int dim>
 ExternalForces external_forces(const contact::NitscheForm<dim>& form)
 {
-  const fem::Constraints& constraints = form.constraints();
   ExternalForces forces{{form.load().begin(), form.load().end()}};
-  std::vector<double> lifting = contact::internal_forces(form, constraints.values);
-  for (std::size_t i = 0; i < lifting.size(); ++i)
-    if (constraints.fixed[i]) lifting[i] = forces.load[i] = 0;
+  std::vector<double> lifting = contact::internal_forces<dim>(form, form.constraints().values);
+  form.keep_free(forces.load);
+  form.keep_free(lifting);
   forces.scale = form.space().norm(forces.load) + form.space().norm(lifting);
   for (std::size_t i = 0; i < lifting.size(); ++i) forces.load[i] -= lifting[i];
   return forces;
@@ -39,6 +38,7 @@ template <int dim>
 std::optional<CondensedDofs> worth_condensing(const contact::NitscheForm<dim>& form,
                                               const algebra::SolverOptions& options, bool from_scratch)
 {
+  if (!form.rigid_parts().empty()) return std::nullopt;
   const bool told = options.method == algebra::LinearMethod::condensed;
   const bool may_pay = dim == 2 && options.method == algebra::LinearMethod::automatic &&
                        options.package != algebra::DirectPackage::umfpack;
@@ -67,17 +67,16 @@ template <int dim>
 std::unique_ptr<Equilibrium<dim>> make_equilibrium(const contact::NitscheForm<dim>& form,
                                                    const algebra::SolverOptions& options, bool from_scratch)
 {
-  ExternalForces forces = external_forces(form);
   if (std::optional<CondensedDofs> dofs = worth_condensing(form, options, from_scratch)) try
     {
-      return condensed_equilibrium(form, forces, *std::move(dofs));
+      return condensed_equilibrium(form, external_forces(form), *std::move(dofs));
     }
     catch (const SolveError& error)  // the tangent may be regular where the stiffness is not
     {
       require_all_failed(form.space().mesh().ranks(), error.what());
       if (options.method == algebra::LinearMethod::condensed) throw;
     }
-  return sparse_equilibrium(form, std::move(forces), options);
+  return whole_equilibrium(form, options);
 }
 
 std::vector<double> round_off(std::span<const double> diagonal, std::span<const double> u)

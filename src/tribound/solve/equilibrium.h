@@ -9,6 +9,7 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/solve/linearised.h"
 
 namespace tribound::solve
 {
@@ -16,8 +17,9 @@ namespace tribound::solve
 /// The forces due to loads and prescribed displacements.
 struct ExternalForces
 {
-  std::vector<double> load;  ///< L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0
-  double scale = 0;          ///< size of the forces in balance: residuals are measured against it
+  /// L(phi_i) - a(lifting of u_D, phi_i) for free i, else 0; on rigid parts as NitscheForm::keep_free().
+  std::vector<double> load;
+  double scale = 0;  ///< size of the forces in balance: residuals are measured against it
 };
 template <int dim>
 [[nodiscard]] ExternalForces external_forces(const contact::NitscheForm<dim>& form);
@@ -54,10 +56,9 @@ class Equilibrium
   /// The round-off in K x, which a residual cannot resolve, estimated by the diagonal of the stiffness.
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
-  /// Solves (K + contact) d = r, `contact` by NitscheForm::contact_tangent_values(), to |residual| <=
-  /// tolerance up to round-off; an iteration may end when its residual is `small_enough`. Throws SolveError
-  /// when the matrix is singular.
-  virtual algebra::LinearSolve solve(std::span<const double> contact, std::span<const double> r,
+  /// Solves K d - (DT_lin[d], [phi_i])_C = r to |residual| <= tolerance up to round-off; an iteration may end
+  /// when its residual is `small_enough`. Throws SolveError when the matrix is singular.
+  virtual algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r,
                                      double tolerance, std::span<double> d,
                                      const algebra::ResidualTest& small_enough) = 0;
   [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
@@ -72,11 +73,18 @@ template <int dim>
 /// 10 eps D u: round-off in K u, with the diagonal D of K; entries of the same unknowns.
 [[nodiscard]] std::vector<double> round_off(std::span<const double> diagonal, std::span<const double> u);
 
-/// All of u, with sparse matrices.
+/// All of u, with sparse matrices. Rigid parts are at rest.
 template <int dim>
 [[nodiscard]] std::unique_ptr<Equilibrium<dim>> sparse_equilibrium(const contact::NitscheForm<dim>& form,
                                                                    ExternalForces forces,
                                                                    const algebra::SolverOptions& options);
+
+/// The same; with rigid parts their motions are unknowns, too: residuals on the parts are nodal forces that
+/// do the work which is missing in each motion. One system with the parts held is solved for each motion
+/// besides.
+template <int dim>
+[[nodiscard]] std::unique_ptr<Equilibrium<dim>> whole_equilibrium(const contact::NitscheForm<dim>& form,
+                                                                  const algebra::SolverOptions& options);
 
 /// The degrees of freedom of own nodes that condensation keeps: the free ones of nodes on the contact
 /// boundary (trace) and of the other nodes of cells there (layer).
@@ -97,7 +105,7 @@ template <int dim>
 
 /// One of the two, by options.method. If that is automatic, condensation is used in 2D as long as it keeps at
 /// most 12 n^{1/2} of n unknowns, or 6 n^{1/2} if few steps are to come (not `from_scratch`). Otherwise as
-/// algebra::choose_method.
+/// algebra::choose_method. Never with rigid parts.
 template <int dim>
 [[nodiscard]] algebra::LinearMethod choose_method(const contact::NitscheForm<dim>& form,
                                                   const algebra::SolverOptions& options, bool from_scratch);

@@ -44,11 +44,9 @@ NewtonIteration<dim>::NewtonIteration(const contact::NitscheForm<dim>& form, con
 template <int dim>
 void NewtonIteration<dim>::initialise(std::span<const double> start)
 {
-  const fem::Constraints& constraints = form_.constraints();
   u_.assign(form_.space().n_dofs(), 0.0);
   std::ranges::copy(start, u_.begin());
-  for (std::size_t i = 0; i < u_.size(); ++i)
-    if (constraints.fixed[i]) u_[i] = constraints.values[i];
+  form_.prescribe(u_);
   x_ = equilibrium_->unknowns(u_);
   internal_ = equilibrium_->internal_forces(x_);
   traction_ = form_.traction(u_, delta_);
@@ -180,7 +178,7 @@ algebra::LinearSolve NewtonIteration<dim>::solve_tangent(std::span<const double>
 {
   try
   {
-    return equilibrium_->solve(linearised_.tangent(form_), rhs, target, delta, small_enough);
+    return equilibrium_->solve(linearised_, rhs, target, delta, small_enough);
   }
   catch (const SolveError& error)
   {

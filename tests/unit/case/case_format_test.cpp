@@ -186,6 +186,12 @@ void try_out(const Row& row)
     expect_refused(row, "[1, 2]");
     expect_refused(row, "1");
   }
+  else if (row.type.starts_with("array of `"))
+  {
+    for (const std::string& word : quoted(row.type, "\"")) expect_accepted(row, "[\"" + word + "\"]");
+    expect_refused(row, "[\"no such word\"]");
+    expect_refused(row, "[]");
+  }
   else if (row.type == "table")
     expect_refused(row, "1");
   else if (row.type.starts_with("name"))

@@ -54,6 +54,7 @@ std::string declared_name(const std::string& documented)
   static const std::map<std::string, std::string> names = {{"boundary.top", "boundary.NAME"},
                                                            {"boundary.top.contact", "boundary.NAME.contact"},
                                                            {"boundary.top.spring", "boundary.NAME.spring"},
+                                                           {"boundary.top.rigid", "boundary.NAME.rigid"},
                                                            {"contact.0", "contact"},
                                                            {"quantity.0", "quantity"},
                                                            {"obstacle.o", "obstacle.NAME"},

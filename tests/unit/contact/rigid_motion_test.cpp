@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/contact/nitsche/rigid_modes.h"
 #include "unit/contact/rigid_motion_testing.h"
 
 namespace tribound::test
@@ -35,6 +35,23 @@ TEST(RigidMotion, ClampedBodyIsHeldWhateverTheLoad)
 {
   EXPECT_EQ(verdict<2>(block(), {clamped<2>("left"), loaded<2>("top", 3, 1)}), "held");
   EXPECT_EQ(verdict<3>(brick(), {clamped<3>("left")}, {1, 1, 1}), "held");
+}
+
+TEST(RigidMotion, RigidPartHoldsOnlyWhatItIsFixedIn)
+{
+  problem::BoundaryCondition<2> platen;
+  platen.name = "top";
+  platen.rigid.emplace().point = {1, 1};
+  platen.rigid->force[1] = -1;
+  EXPECT_THAT(verdict<2>(block(), {platen}), HasSubstr("translation along y; rotation about"));
+  platen.rigid->fixed = {true, false, true};
+  EXPECT_THAT(verdict<2>(block(), {platen}),
+              AllOf(HasSubstr("translation along y"), Not(HasSubstr("rotation"))));
+  platen.rigid->fixed = {true, true, false};
+  EXPECT_THAT(verdict<2>(block(), {platen}),
+              AllOf(HasSubstr("rotation about (1, 1)"), Not(HasSubstr("translation"))));
+  platen.rigid->fixed = {true, true, true};
+  EXPECT_EQ(verdict<2>(block(), {platen}), "held");
 }
 
 TEST(RigidMotion, RollerLeavesTheMotionAlongIt)

@@ -199,6 +199,18 @@ std::vector<Resultant<dim>> sum_reactions(const contact::NitscheForm<dim>& form,
   return result;
 }
 
+/// The given force and moment.
+template <int dim>
+Resultant<dim> force_on(const problem::RigidPart<dim>& part, const Point<dim>& about)
+{
+  Point<dim> force;
+  for (int a = 0; a < dim; ++a) force[a] = part.force[a](part.point);
+  Resultant<dim> result;
+  result.add(part.point - about, force);
+  for (std::size_t a = 0; a < part.moment.size(); ++a) result.moment[a] += part.moment[a](part.point);
+  return result;
+}
+
 template <int dim>
 std::string load_source(const problem::BoundaryCondition<dim>& condition)
 {
@@ -276,9 +288,14 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
   add(
       BalanceKind::load, [](const auto& b, int) { return b.is_loaded(); }, load_source<dim>,
       loads.boundaries);
+  for (const problem::BoundaryCondition<dim>& boundary : boundaries)
+    if (boundary.rigid)
+      result.rows.push_back(
+          row(BalanceKind::load, boundary.name, "rigid part", force_on<dim>(*boundary.rigid, about)));
   add(
-      BalanceKind::reaction, [](const auto& b, int) { return b.fixes_any(); },
-      [](const auto&) { return "displacement"; }, reactions);
+      BalanceKind::reaction,
+      [](const auto& b, int) { return b.rigid ? b.rigid->fixes_any() : b.fixes_any(); },
+      [](const auto& b) { return b.rigid ? "guide" : "displacement"; }, reactions);
   add(
       BalanceKind::spring, [](const auto& b, int) { return b.spring.has_value(); },
       [](const auto&) { return "spring"; }, springs);

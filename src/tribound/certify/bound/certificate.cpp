@@ -199,8 +199,10 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
   result.covered = {
       "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
       "H^1, "
-      "zero where displacements are prescribed, with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
-      "facets F" +
+      "zero where displacements are prescribed" +
+          std::string(form.problem().has_rigid_parts() ? " and a rigid motion on each rigid part" : "") +
+          ", with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
+          "facets F" +
           std::string(form.problem().has_springs() ? " and those on springs" : "") +
           std::string(form.problem().pairs().empty()
                           ? "; no unknown constant"

@@ -14,17 +14,17 @@ namespace tribound::certify
 /// Global or cell values of the components; stress units times length^(dim/2).
 struct BoundComponents
 {
-  double osc = 0;    ///< (h_T / pi) ||f - Pi^{p-1} f||
-  double str = 0;    ///< ||sigma_dis - sigma(u)||, sigma(u) = C eps(u) + sigma_0
-  double neu = 0;    ///< sum over Neumann facets of C_{T,F} ||g_N - Pi^p_F g_N||
-  double lin1 = 0;   ///< ||sigma_lin||
-  double cnt = 0;    ///< (sum h_F ||[P^n]_- - sigma_dis^n||_F^2)^{1/2}
-  double frc = 0;    ///< (sum h_F ||[P^t]_S - sigma_dis^t||_F^2)^{1/2}
-  double lin2n = 0;  ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
-  double lin2t = 0;  ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
-  double quad =
-      0;           ///< C_F ||rho||, rho the means of what quadrature may miss of the loads; of no single cell
-  double alg = 0;  ///< what the linear solver has left, see algebraic_error(); not attributed to cells
+  double osc = 0;      ///< (h_T / pi) ||f - Pi^{p-1} f||
+  double str = 0;      ///< ||sigma_dis - sigma(u)||, sigma(u) = C eps(u) + sigma_0
+  double neu = 0;      ///< sum over Neumann facets of C_{T,F} ||g_N - Pi^p_F g_N||
+  double lin1 = 0;     ///< ||sigma_lin||
+  double cnt = 0;      ///< (sum h_F ||[P^n]_- - sigma_dis^n||_F^2)^{1/2}
+  double frc = 0;      ///< (sum h_F ||[P^t]_S - sigma_dis^t||_F^2)^{1/2}
+  double lin2n = 0;    ///< (sum h_F ||sigma_lin^n||_F^2)^{1/2}
+  double lin2t = 0;    ///< (sum h_F ||sigma_lin^t||_F^2)^{1/2}
+  double quad = 0;     ///< C_F ||rho||, rho the means of what quadrature may miss of the loads, and
+                       ///< rigid_remainder(); of no single cell
+  double alg = 0;      ///< what the linear solver has left, see algebraic_error(); not attributed to cells
   double reg1 = 0;     ///< ||sigma_reg||; like the next two, 0 unless T is regularised, method section 7
   double reg2n = 0;    ///< (sum h_F ||sigma_reg^n||_F^2)^{1/2}
   double reg2t = 0;    ///< (sum h_F ||sigma_reg^t||_F^2)^{1/2}

@@ -19,13 +19,13 @@ double dirichlet_interpolation_error(const contact::NitscheForm<dim>& form)
   for (const mesh::BoundaryFacet& facet : space.mesh().owned_boundary())
   {
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
-    if (!boundary.fixes_any()) continue;
+    if (!boundary.clamps_any()) continue;
     for (const auto& [q, x, dx] : fem::facet_points(space.mesh(), facet.cell, facet.local, form.facet_rule()))
     {
       const Point<dim> interpolant = fem::value_at<dim>(
           space.cell_nodes(facet.cell), form.constraints().values, table.on_facet[facet.local].values_at(q));
       for (int c = 0; c < dim; ++c)
-        if (boundary.fixes(c))
+        if (boundary.clamps(c))
           largest = std::max(largest, std::abs((*boundary.displacement[c])(x)-interpolant[c]));
     }
   }
@@ -93,7 +93,7 @@ double dirichlet_interpolation_bound(const contact::NitscheForm<dim>& form)
   {
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     for (int c = 0; c < dim; ++c)
-      if (boundary.fixes(c) && boundary.displacement[c]->degree() > form.space().degree())
+      if (boundary.clamps(c) && boundary.displacement[c]->degree() > form.space().degree())
         largest = std::max(largest, interpolation_bound(form, facet, c));
   }
   return form.space().mesh().ranks().max(largest);

@@ -8,6 +8,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
 #include "tribound/base/sorted.h"
+#include "tribound/certify/bound/rigid_remainder.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/polynomials.h"
 
@@ -92,7 +93,9 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
       });
   const double alg =
       std::isfinite(friedrichs_.value) ? algebraic_error<dim>(mesh, rho, friedrichs_.value) : 0;
-  add_up(result, data.missed > 0 ? friedrichs_.value * data.missed : 0, alg, mesh.ranks());
+  const double quad = (data.missed > 0 ? friedrichs_.value * data.missed : 0) +
+                      rigid_remainder<dim>(form_, stress, friedrichs_.value);
+  add_up(result, quad, alg, mesh.ranks());
   return result;
 }
 

@@ -53,7 +53,7 @@ std::vector<char> fixed_facets(const problem::Problem<dim>& problem, const mesh:
 {
   std::vector<char> fixed(mesh.topology().facets.size(), 0);
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
-    if (problem.boundary(facet.tag).fixes(component))
+    if (problem.boundary(facet.tag).clamps(component))
       fixed[mesh.topology().cell_facets[facet.cell][facet.local]] = 1;
   return fixed;
 }
@@ -172,7 +172,7 @@ Held held(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
       for (const mesh::BoundaryFacet& facet : body.facets)
         for (int a = 0; a < dim; ++a)
           of_body[a] =
-              of_body[a] || problem.boundary(facet.tag).fixes(a) || problem.boundary(facet.tag).is_in_norm();
+              of_body[a] || problem.boundary(facet.tag).clamps(a) || problem.boundary(facet.tag).is_in_norm();
       for (int a = 0; a < dim; ++a) of_any[a] = of_any[a] || of_body[a];
       if (std::ranges::count(of_body, false) > 0) result = Held::with_pairs;
     }

@@ -8,7 +8,7 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/poincare_korn.h"
-#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/contact/nitsche/rigid_modes.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
 
@@ -141,7 +141,7 @@ class BodyConstants
 
   [[nodiscard]] bool is_fixed(const mesh::BoundaryFacet& facet) const
   {
-    return problem_.boundary(facet.tag).fixes_any();
+    return problem_.boundary(facet.tag).clamps_any();
   }
 
   /// Paths from cell to cell, the shortest from a cell at Gamma_D.
@@ -207,7 +207,7 @@ class BodyConstants
       body.fixed += measure * paths_[facet.cell].largest(x);
       auto modes = modes_at(x);
       for (int a = 0; a < dim; ++a)
-        if (!problem_.boundary(facet.tag).fixes(a))
+        if (!problem_.boundary(facet.tag).clamps(a))
           for (auto& at_vertex : modes) at_vertex.row(a).setZero();
       body.held += products(modes, measure);
     }

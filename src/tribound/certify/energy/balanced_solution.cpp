@@ -61,9 +61,10 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                      });
   constexpr double tight = 1e-12;
   if (&space == &rich.space() && motions.size() == 0) return systems.solve(OnContact::free, r, start, tight);
-  const std::vector<Index> supports = motions.size() > 0 ? motions.supports(space) : std::vector<Index>();
-  const ElasticSystem<dim> system(rich.problem(), space, fem::dirichlet(rich.problem(), space).fixed, solver,
-                                  {}, supports);
+  std::vector<char> fixed = fem::dirichlet(rich.problem(), space).fixed;
+  const std::vector<Index> supports =
+      motions.size() > 0 ? motions.supports(space, fixed) : std::vector<Index>();
+  const ElasticSystem<dim> system(rich.problem(), space, std::move(fixed), solver, {}, supports);
   const std::vector<double> u = system.solve(r, start, tight);
   return &space == &rich.space() ? u : raised(space, u, rich.space());
 }

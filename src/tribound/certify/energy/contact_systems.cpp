@@ -17,7 +17,7 @@ ContactSystems<dim>::ContactSystems(const contact::NitscheForm<dim>& form,
                                     const algebra::SolverOptions& solver, bool many)
     : form_(form),
       solver_(solver),
-      may_condense_(many && dim == 2 &&
+      may_condense_(many && dim == 2 && form.rigid_parts().empty() &&
                     solve::choose_method(form, solver, true) == algebra::LinearMethod::condensed)
 {
 }

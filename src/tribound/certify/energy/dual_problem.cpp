@@ -4,8 +4,11 @@
 #include <utility>
 
 #include "tribound/certify/bound/checks.h"
+#include "tribound/certify/bound/rigid_remainder.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/energy/load_oscillation.h"
+#include "tribound/contact/nitsche/contact_moments.h"
+#include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
 {
@@ -32,7 +35,8 @@ Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<cons
                                        std::string& reason) const
 {
   Stress<dim> stress = equilibrator_->balanced(z, t, {});
-  if (!(check_identities<dim>(form_, t, stress).largest() <= cell_balance_limit))
+  if (!(check_identities<dim>(form_, t, stress).largest() <= cell_balance_limit) ||
+      !(rigid_defect<dim>(form_, stress) <= cell_balance_limit))
     reason = "an identity of the dual stress is violated";
   return stress;
 }
@@ -81,9 +85,31 @@ problem::Problem<dim> unloaded(const problem::Problem<dim>& problem, const mesh:
       {
         boundary.traction = {};
         boundary.pressure.reset();
+        if (boundary.rigid) boundary.rigid->force = {};
+        if (boundary.rigid) boundary.rigid->moment = {};
         if (number == tag) load(boundary);
       },
       [](problem::Region<dim>& region) { region.body_force = {}; });
+}
+
+/// The force and moment of the traction q on a rigid part.
+template <int dim>
+void set_resultant(const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q, problem::RigidPart<dim>& part)
+{
+  Point<dim + 1> sum = Point<dim + 1>::Zero();  // of x; the last entry: the measure
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+  {
+    if (facet.tag != tag) continue;
+    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+      sum.template head<dim>() += measure / dim * mesh.vertex(v);
+    sum[dim] += measure;
+  }
+  mesh.ranks().sum(std::span(sum.data(), sum.size()));
+  const Point<dim> arm = sum.template head<dim>() - sum[dim] * part.point;
+  const auto moment = contact::moment(arm, q);
+  for (int a = 0; a < dim; ++a) part.force[a] = problem::Field(sum[dim] * q[a]);
+  for (std::size_t a = 0; a < part.moment.size(); ++a) part.moment[a] = problem::Field(moment[a]);
 }
 
 }  // namespace
@@ -102,7 +128,10 @@ problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem, const m
   return unloaded<dim>(problem, mesh, tag,
                        [&](problem::BoundaryCondition<dim>& boundary)
                        {
-                         for (int a = 0; a < dim; ++a) boundary.traction[a] = problem::Field(q[a]);
+                         if (boundary.rigid)
+                           set_resultant<dim>(mesh, tag, q, *boundary.rigid);
+                         else
+                           for (int a = 0; a < dim; ++a) boundary.traction[a] = problem::Field(q[a]);
                        });
 }
 

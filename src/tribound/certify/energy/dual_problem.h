@@ -45,8 +45,8 @@ class DualProblem
   std::unique_ptr<Equilibrator<dim>> equilibrator_;
 };
 
-/// Without loads, with those of the problem, with the traction q on one boundary, or with -(K e, w) on the
-/// spring of one; always without contact, and otherwise springs that rest at 0.
+/// Without loads, with those of the problem, with the traction q on one boundary, also a rigid part, or with
+/// -(K e, w) on the spring of one; always without contact, and otherwise springs that rest at 0.
 template <int dim>
 [[nodiscard]] problem::Problem<dim> without_loads(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh);

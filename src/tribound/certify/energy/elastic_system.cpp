@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/algebra/petsc.h"
+#include "tribound/base/dense_factors.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
 namespace tribound::certify
@@ -55,7 +56,11 @@ template <int dim>
 ElasticSystem<dim>::ElasticSystem(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                   std::vector<char> fixed, const algebra::SolverOptions& solver,
                                   algebra::Triplets springs, std::span<const Index> supports)
-    : problem_(problem), space_(space), elastic_(problem, space), fixed_(std::move(fixed))
+    : problem_(problem),
+      space_(space),
+      elastic_(problem, space),
+      parts_(problem, space),
+      fixed_(std::move(fixed))
 {
   std::optional<algebra::SparseMatrix> added;
   if (space.mesh().ranks().any(!springs.rows.empty()))
@@ -70,23 +75,75 @@ template <int dim>
 ElasticSystem<dim>::~ElasticSystem() = default;
 
 template <int dim>
+std::vector<double> ElasticSystem<dim>::internal_forces(std::span<const double> u) const
+{
+  std::vector<double> internal = contact::apply_stiffness(problem_, space_, u);
+  elastic_.add_forces(u, internal);
+  if (factors_->springs)
+  {
+    const std::vector<double> of_springs = factors_->springs->multiply(u);
+    for (std::size_t i = 0; i < internal.size(); ++i) internal[i] += of_springs[i];
+  }
+  return internal;
+}
+
+template <int dim>
+void ElasticSystem<dim>::release(std::span<double> vector) const
+{
+  for (std::size_t i = 0; i < vector.size(); ++i)
+    if (fixed_[i] != 0) vector[i] = 0;
+}
+
+template <int dim>
 std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::span<const double> start,
                                               double tolerance) const
 {
-  std::vector<double> internal = contact::apply_stiffness(problem_, space_, start);
-  elastic_.add_forces(start, internal);
-  if (factors_->springs)
-  {
-    const std::vector<double> of_springs = factors_->springs->multiply(start);
-    for (std::size_t i = 0; i < internal.size(); ++i) internal[i] += of_springs[i];
-  }
+  const std::vector<double> internal = internal_forces(start);
   const double scale = space_.norm(b) + space_.norm(internal);
-  std::vector<double> r(b.size(), 0.0);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed_[i] != 0 ? 0 : b[i] - internal[i];
+  std::vector<double> r(b.begin(), b.end());
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal[i];
+  release(r);
   std::vector<double> u(r.size(), 0.0);
   (void)factors_->linear.solve(factors_->matrix, r, tolerance * scale, u);
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] = fixed_[i] != 0 ? start[i] : start[i] + u[i];
+  release(u);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += start[i];
+  if (parts_.size() > 0) move_parts(b, u);
   return u;
+}
+
+template <int dim>
+void ElasticSystem<dim>::find_moved() const
+{
+  constexpr double tight = 1e-13;  // of the forces that a motion of a part causes
+  work_.resize(static_cast<Eigen::Index>(parts_.size()), static_cast<Eigen::Index>(parts_.size()));
+  for (std::size_t j = 0; j < parts_.size(); ++j)
+  {
+    std::vector<double>& moved = moved_.emplace_back(space_.n_dofs(), 0.0);
+    std::vector<double> unit(parts_.size(), 0.0);
+    unit[j] = 1;
+    parts_.add(unit, moved);
+    std::vector<double> r = internal_forces(moved);
+    release(r);
+    std::vector<double> others(r.size(), 0.0);
+    (void)factors_->linear.solve(factors_->matrix, r, tight * space_.norm(r), others);
+    release(others);
+    for (std::size_t i = 0; i < others.size(); ++i) moved[i] -= others[i];
+    std::ranges::copy(parts_.along(internal_forces(moved)), work_.col(static_cast<Eigen::Index>(j)).begin());
+  }
+}
+
+/// Moves the parts, and all else with them, so that the forces on them are those of b up to rounding.
+template <int dim>
+void ElasticSystem<dim>::move_parts(std::span<const double> b, std::span<double> u) const
+{
+  if (moved_.empty()) find_moved();
+  std::vector<double> lacking = internal_forces(u);
+  for (std::size_t i = 0; i < lacking.size(); ++i) lacking[i] = b[i] - lacking[i];
+  const std::vector<double> in_motions = parts_.along(lacking);
+  const Eigen::VectorXd by =
+      solve_regular(work_, Eigen::Map<const Eigen::VectorXd>(in_motions.data(), work_.rows()));
+  for (std::size_t j = 0; j < moved_.size(); ++j)
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] += by[static_cast<Eigen::Index>(j)] * moved_[j][i];
 }
 
 template class ElasticSystem<2>;

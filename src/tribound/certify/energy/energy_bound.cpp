@@ -8,6 +8,7 @@
 
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/korn.h"
+#include "tribound/certify/bound/rigid_remainder.h"
 #include "tribound/certify/energy/admissible_displacement.h"
 #include "tribound/certify/energy/admissible_traction.h"
 #include "tribound/certify/energy/balanced_solution.h"
@@ -221,13 +222,17 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const IdentityDefects identities = check_identities<dim>(form, t_h.at_points, stress);
   if (!(identities.largest() <= cell_balance_limit))
     return {.reason = "an identity of the equilibrated stress is violated"};
+  if (!(rigid_defect<dim>(form, stress) <= cell_balance_limit))
+    return {.reason = "the equilibrated stress does not carry the forces on a rigid part"};
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};
   const std::vector<double> transfer = transfer_oscillation<dim>(form, parts_->terms, t_h.at_points);
   const LoadOscillation loads = load_oscillation<dim>(form, balanced, parts_->korn);
   if (!std::isfinite(loads.missed))
     return {.reason = "quadrature may miss a part of the loads, and contact or springs alone hold a body"};
-  EnergyBound best{.reason = "no displacement near the computed one is admissible"};
+  EnergyBound best{.reason = parts_->facets.touch(form.rigid_parts())
+                                 ? "a rigid part that touches a contact boundary would have to move"
+                                 : "no displacement near the computed one is admissible"};
   for (const bool is_open : {true, false})
   {
     const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;

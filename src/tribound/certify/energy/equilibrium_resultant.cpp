@@ -39,6 +39,31 @@ bool slides_along(const contact::NitscheForm<dim>& form, std::size_t k, const Ri
                              { return motion(point.x).dot(point.normal) == 0; });
 }
 
+/// The motion of a rigid part: that of its point, and its rotation.
+template <int dim>
+Eigen::Matrix<double, dim*(dim + 1) / 2, 1> of_part(const RigidMotion<dim>& motion,
+                                                    const problem::RigidPart<dim>& part)
+{
+  Eigen::Matrix<double, dim*(dim + 1) / 2, 1> result;
+  result.template head<dim>() = motion(part.point);
+  if constexpr (dim == 2)
+    result[2] = motion.spin(1, 0);
+  else
+    result.template tail<3>() = Point<3>(motion.spin(2, 1), motion.spin(0, 2), motion.spin(1, 0));
+  return result;
+}
+
+/// Whether the guide of a rigid part acts in the motion.
+template <int dim>
+bool is_guided(const RigidMotion<dim>& motion, const problem::RigidPart<dim>& part)
+{
+  const auto moved = of_part(motion, part);
+  bool found = false;
+  for (std::size_t i = 0; i < part.fixed.size(); ++i)
+    found = found || (part.fixed[i] && moved[static_cast<Eigen::Index>(i)] != 0);
+  return found;
+}
+
 /// Whether anything but the facets of the resultant acts on the bodies in the motion.
 template <int dim>
 bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
@@ -60,14 +85,35 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
   {
     const problem::BoundaryCondition<dim>& condition = form.problem().boundary(facet.tag);
     if (!condition.holds_any() || !moves(facet)) continue;
+    if (condition.rigid)
+    {
+      by_conditions = by_conditions || is_guided(resultant.motion, *condition.rigid);
+      continue;
+    }
     const Tensor<dim> acting =
         resultant.has_spring(form.problem(), facet.tag)
-            ? condition.fixed()
+            ? condition.clamped()
             : condition.acting(mesh::facet_geometry(mesh, facet.cell, facet.local).normal);
     for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
       by_conditions = by_conditions || !(acting * resultant.motion(mesh.vertex(v))).isZero(0);
   }
   return mesh.ranks().any(by_contact || by_conditions);
+}
+
+/// The boundaries that are rigid parts of these bodies; all on the first rank.
+template <int dim>
+std::vector<int> moved_parts(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
+                             std::span<const double> moved)
+{
+  std::vector<double> is_moved(form.problem().boundaries().size(), 0.0);
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
+    if (form.problem().boundary(facet.tag).rigid) is_moved[facet.tag] = moved[bodies.of_cell[facet.cell]];
+  mesh.ranks().max(std::span(is_moved));
+  std::vector<int> result;
+  for (std::size_t tag = 0; tag < is_moved.size() && mesh.ranks().rank() == 0; ++tag)
+    if (is_moved[tag] != 0) result.push_back(static_cast<int>(tag));
+  return result;
 }
 
 /// Sums of the work of loads in the motion, of its absolute values and of what quadrature may miss.
@@ -91,6 +137,19 @@ class LoadSums
     Point<dim> largest = Point<dim>::Zero();
     for (const Point<dim>& x : vertices) largest = largest.cwiseMax(motion_(x).cwiseAbs());
     missed_ += missed * largest.sum();
+  }
+
+  /// Adds the force and the moment on a rigid part.
+  void add(const problem::RigidPart<dim>& part)
+  {
+    const auto moved = of_part(motion_, part);
+    const auto add = [&](const problem::Field& load, double along)
+    {
+      work_ += load(part.point) * along;
+      absolute_ += std::abs(load(part.point) * along);
+    };
+    for (int a = 0; a < dim; ++a) add(part.force[a], moved[a]);
+    for (std::size_t a = 0; a < part.moment.size(); ++a) add(part.moment[a], moved[dim + a]);
   }
 
   [[nodiscard]] KnownNumber total(const Ranks& ranks) const
@@ -138,6 +197,7 @@ std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& for
              mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local)),
              data.traction_remainder(k).mean);
   }
+  for (const int tag : moved_parts(form, bodies, moved)) sums.add(*form.problem().boundary(tag).rigid);
   return sums.total(mesh.ranks());
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "tribound/base/dense_factors.h"
-#include "tribound/contact/support/holding_points.h"
+#include "tribound/contact/support/holds.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -44,8 +44,7 @@ std::vector<contact::RigidModes<dim>> modes_of(const mesh::Mesh<dim>& mesh, cons
   return modes;
 }
 
-/// Per body the sum of r r^T over the rows r of the modes, for each component that a boundary holds at one of
-/// its holding_points().
+/// Per body the sum of r r^T over the rows r of for_each_hold().
 template <int dim>
 std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                 const mesh::Bodies& bodies, std::span<const contact::RigidModes<dim>> modes)
@@ -56,14 +55,10 @@ std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh
   {
     const auto& boundary = problem.boundary(facet.tag);
     if (!boundary.holds_any()) continue;
-    const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     const int body = bodies.of_cell[facet.cell];
     Eigen::Map<Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(body) * n * n]);
-    for (const Point<dim>& x : contact::holding_points(boundary, mesh, facet))
-    {
-      const Eigen::Matrix<double, dim, n> motions = boundary.held(x, normal) * modes[body].at(x);
-      gram += motions.transpose() * motions;
-    }
+    contact::for_each_hold(boundary, mesh, facet, modes[body],
+                           [&](const auto& rows) { gram += rows.transpose() * rows; });
   }
   mesh.ranks().sum(std::span(grams));
   return grams;
@@ -143,7 +138,8 @@ std::vector<int> bodies_of_nodes(const fem::LagrangeSpace<dim>& space, const Fre
 /// motions.
 template <int dim>
 std::vector<Candidate<dim>> best_rows(const FreeMotions<dim>& motions, const fem::LagrangeSpace<dim>& space,
-                                      std::span<const Point<dim>> points, std::span<const int> bodies,
+                                      std::span<const char> fixed, std::span<const Point<dim>> points,
+                                      std::span<const int> bodies,
                                       std::span<const std::vector<MotionRow<dim>>> chosen)
 {
   std::vector<Candidate<dim>> candidates(chosen.size());
@@ -157,7 +153,8 @@ std::vector<Candidate<dim>> best_rows(const FreeMotions<dim>& motions, const fem
     for (int i = begin; i < end; ++i) rows.col(i - begin) = motions(i, points[node]);
     for (const MotionRow<dim>& unit : chosen[body]) rows -= rows * unit * unit.transpose();
     for (int a = 0; a < dim; ++a)
-      if (const double length = rows.row(a).norm(); length > candidates[body].length)
+      if (const double length = rows.row(a).norm();
+          fixed[dim * node + a] == 0 && length > candidates[body].length)
         candidates[body] = {rows.row(a).transpose(), length, dim * own + a};
   }
   return candidates;
@@ -167,7 +164,8 @@ std::vector<Candidate<dim>> best_rows(const FreeMotions<dim>& motions, const fem
 
 /// Gram-Schmidt orthogonalisation; takes the longest remainder first.
 template <int dim>
-std::vector<Index> FreeMotions<dim>::supports(const fem::LagrangeSpace<dim>& space) const
+std::vector<Index> FreeMotions<dim>::supports(const fem::LagrangeSpace<dim>& space,
+                                              std::span<const char> fixed) const
 {
   constexpr int n = n_modes<dim>;
   const Ranks& ranks = space.mesh().ranks();
@@ -179,7 +177,8 @@ std::vector<Index> FreeMotions<dim>::supports(const fem::LagrangeSpace<dim>& spa
   for (int b = 0; b < bodies_.n; ++b) most = std::max(most, of_body(b).size());
   for (int step = 0; step < most; ++step)
   {
-    const std::vector<Candidate<dim>> candidates = best_rows<dim>(*this, space, points, bodies, chosen);
+    const std::vector<Candidate<dim>> candidates =
+        best_rows<dim>(*this, space, fixed, points, bodies, chosen);
     const std::vector<char> here = is_here<dim>(ranks, candidates);
     std::vector<double> units(static_cast<std::size_t>(bodies_.n) * n, 0.0);
     const auto unit_of = [&](int b)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tribound/base/types.h"
-#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/contact/nitsche/rigid_modes.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/mesh.h"
@@ -48,9 +48,11 @@ class FreeMotions
     return modes_[i].at(x) * motions_[i];
   }
 
-  /// As many degrees of freedom as motions, far from each other; no motion of a body except 0 leaves all of
-  /// its own at rest. Returns those that this rank owns: dim * k + component for the own node k.
-  [[nodiscard]] std::vector<Index> supports(const fem::LagrangeSpace<dim>& space) const;
+  /// As many degrees of freedom as motions, none of them `fixed`, far from each other; no motion of a body
+  /// except 0 leaves all of its own at rest. Returns those that this rank owns: dim * k + component for the
+  /// own node k.
+  [[nodiscard]] std::vector<Index> supports(const fem::LagrangeSpace<dim>& space,
+                                            std::span<const char> fixed) const;
 
  private:
   using Modes = contact::RigidModes<dim>;

@@ -210,12 +210,13 @@ bool LinearIntervals<dim>::fits(const LinearNumber<dim>& number, const Natural& 
                                 std::span<const double> z) const
 {
   const std::vector<char>& fixed = state_.form.constraints().fixed;
+  const std::vector<char> on_parts = state_.form.rigid_parts().marks();
   std::vector<double> y(z.begin(), z.end());
   std::array<double, 2> largest{};  // of what should be 0, and of all
   for (std::size_t i = 0; i < y.size(); ++i)
   {
     if (number.weight) y[i] += number.weight->at_nodes[i];
-    if (fixed[i] != 0) largest[0] = std::max(largest[0], std::abs(y[i]));
+    if (fixed[i] != 0 && on_parts[i] == 0) largest[0] = std::max(largest[0], std::abs(y[i]));
     largest[1] = std::max({largest[1], std::abs(y[i]), std::abs(z[i])});
   }
   for (std::size_t k = 0; k < state_.facets.size(); ++k)

@@ -254,6 +254,17 @@ std::vector<Point<dim>> ObstacleFacets<dim>::slip(std::size_t k, std::span<const
 }
 
 template <int dim>
+bool ObstacleFacets<dim>::touch(const contact::RigidParts<dim>& parts) const
+{
+  if (parts.empty()) return false;
+  const std::vector<char> on_parts = parts.marks();
+  const auto is_on_part = [&](Index node)
+  { return node >= 0 && on_parts[static_cast<std::size_t>(dim) * node] != 0; };
+  return form_.space().mesh().ranks().any(std::ranges::any_of(nodes_, is_on_part) ||
+                                          std::ranges::any_of(master_nodes_, is_on_part));
+}
+
+template <int dim>
 std::vector<char> ObstacleFacets<dim>::junctions() const
 {
   const fem::LagrangeSpace<dim>& space = form_.space();

@@ -54,6 +54,8 @@ class ObstacleFacets
   [[nodiscard]] std::vector<char> junctions() const;
   /// Marks degrees of freedom on facets that do not match. All ranks together.
   [[nodiscard]] std::vector<char> between_meshes() const;
+  /// Whether a rigid part has a node on Gamma_C. All ranks together.
+  [[nodiscard]] bool touch(const contact::RigidParts<dim>& parts) const;
   [[nodiscard]] const ContactFrames<dim>& frames() const { return frames_; }
   /// Coefficients of g_h, the interpolant of g of degree p, where N varies of degree p + 2.
   [[nodiscard]] std::span<const double> gap(std::size_t k) const

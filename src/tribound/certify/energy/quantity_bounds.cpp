@@ -82,10 +82,17 @@ void QuantityBounds<dim>::prepare(const contact::NitscheForm<dim>& bounded, cons
   is_held_ = is_held;
   is_homogeneous_ = is_homogeneous(bounded, facets);
   work_is_energy_ = is_homogeneous_ && slides_freely(bounded);
+  // its motion is then not free where the values of dual displacements are given
+  const bool touches = facets.touch(bounded.rigid_parts());
   std::optional<ContactWeights<dim>> weights;
   for (Item& item : items_)
   {
     if (is_energy(item) || !item.reason.empty() || item.is_known()) continue;
+    if (touches)
+    {
+      item.reason = "a rigid part touches a contact boundary";
+      continue;
+    }
     if (item.parts.resultants.empty() && !is_held)
     {
       item.reason = "contact alone holds a body";  // else the load of the dual problem would move it

@@ -2,6 +2,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "tribound/base/dense_factors.h"
+#include "tribound/base/norm.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
@@ -60,7 +62,8 @@ DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace
       n_refinements_(richer.refinements),
       refined_(mesh::refine_uniformly(form.space().mesh(), richer.refinements)),
       space_(refined_.mesh, richer.degree),
-      springs_(form.problem(), space_)
+      springs_(form.problem(), space_),
+      parts_(form.problem(), space_)
 {
   assert(richer.degree >= form.space().degree());
   segments_ = refined_segments<dim>(form.space().mesh(), form.segments(), refined_);
@@ -112,6 +115,8 @@ void DualNorm<dim>::find_operators()
     op.solver = std::make_unique<algebra::LinearSolver>(direct, std::span<const Point<dim>>(),
                                                         algebra::MatrixKind::positive_definite);
   }
+  if (parts_.size() > 0)
+    whole_ = std::make_unique<algebra::SparseMatrix>(matrix(std::vector<char>(space_.n_nodes(), 0)));
 }
 
 /// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k + sum_F (1/h_F) (phi_j, phi_i)_F between
@@ -225,6 +230,7 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
     load_ = contact::assemble_load(data, space_);
     contact::add_initial_stress<dim>(data, space_, load_);
     springs_.add_rest(load_);
+    parts_.add_load(load_);
   }
   return residual(u, load_);
 }
@@ -241,34 +247,78 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span
   return r;
 }
 
-/// With z from an inexact solver, <R, z> / ||z|| is still below the dual norm; ||z|| might not be.
 template <int dim>
-double DualNorm<dim>::of(std::span<const double> r)
+std::vector<double> DualNorm<dim>::riesz(std::span<const double> functional)
 {
   constexpr double tolerance = 1e-12;
-  double pairing = 0;       // <R, z>
-  double norm_squared = 0;  // ||z||_{C,h}^2
+  std::vector<double> result(space_.n_dofs(), 0.0);
   std::vector<double> rhs(space_.n_nodes());
   std::vector<double> z(space_.n_nodes());
   for (Operator& op : operators_)
     for (const int a : op.components)
     {
-      double rhs_squared = 0;
-      for (Index i = 0; i < space_.n_nodes(); ++i)
-      {
-        rhs[i] = op.fixed[i] ? 0 : r[dim * i + a];
-        rhs_squared += rhs[i] * rhs[i];
-      }
-      if (rhs_squared == 0) continue;
+      for (Index i = 0; i < space_.n_nodes(); ++i) rhs[i] = op.fixed[i] ? 0 : functional[dim * i + a];
+      if (norm(rhs) == 0) continue;
       std::ranges::fill(z, 0.0);
-      op.solver->solve(*op.matrix, rhs, tolerance * std::sqrt(rhs_squared), z);
-      const std::vector<double> az = op.matrix->multiply(z);
-      for (Index i = 0; i < space_.n_nodes(); ++i)
-      {
-        pairing += rhs[i] * z[i];
-        norm_squared += az[i] * z[i];
-      }
+      op.solver->solve(*op.matrix, rhs, tolerance * norm(rhs), z);
+      for (Index i = 0; i < space_.n_nodes(); ++i) result[dim * i + a] = z[i];
     }
+  return result;
+}
+
+template <int dim>
+std::vector<double> DualNorm<dim>::product(std::span<const double> z) const
+{
+  std::vector<double> result(space_.n_dofs(), 0.0);
+  std::vector<double> component(space_.n_nodes());
+  for (const Operator& op : operators_)
+    for (const int a : op.components)
+    {
+      for (Index i = 0; i < space_.n_nodes(); ++i) component[i] = z[dim * i + a];
+      const std::vector<double> az = (whole_ ? *whole_ : *op.matrix).multiply(component);
+      for (Index i = 0; i < space_.n_nodes(); ++i) result[dim * i + a] = az[i];
+    }
+  return result;
+}
+
+template <int dim>
+void DualNorm<dim>::move_parts(std::span<const double> functional, std::vector<double>& z)
+{
+  const auto n = static_cast<Eigen::Index>(parts_.size());
+  std::vector<std::vector<double>> moved;
+  Eigen::MatrixXd products(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+  {
+    std::vector<double> unit(parts_.size(), 0.0);
+    unit[j] = 1;
+    std::vector<double>& w = moved.emplace_back(space_.n_dofs(), 0.0);
+    parts_.add(unit, w);
+    const std::vector<double> others = riesz(product(w));
+    for (std::size_t i = 0; i < w.size(); ++i) w[i] -= others[i];
+    std::ranges::copy(parts_.along(product(w)), products.col(j).begin());
+  }
+  std::vector<double> lacking = product(z);
+  for (std::size_t i = 0; i < lacking.size(); ++i) lacking[i] = functional[i] - lacking[i];
+  const std::vector<double> in_motions = parts_.along(lacking);
+  const Eigen::VectorXd by = solve_regular(products, Eigen::Map<const Eigen::VectorXd>(in_motions.data(), n));
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += by[j] * moved[j][i];
+}
+
+/// With z from an inexact solver, <R, z> / ||z|| is still below the dual norm; ||z|| might not be.
+template <int dim>
+double DualNorm<dim>::of(std::span<const double> r)
+{
+  std::vector<double> z = riesz(r);
+  if (parts_.size() > 0) move_parts(r, z);
+  const std::vector<double> az = product(z);
+  double pairing = 0;       // <R, z>
+  double norm_squared = 0;  // ||z||_{C,h}^2
+  for (std::size_t i = 0; i < z.size(); ++i)
+  {
+    pairing += r[i] * z[i];
+    norm_squared += az[i] * z[i];
+  }
   return norm_squared > 0 ? pairing / std::sqrt(norm_squared) : 0;
 }
 

@@ -36,7 +36,8 @@ template <int dim>
 
 /// The dual norm of the residual of functions of one discrete problem, from below.
 ///
-/// For z in W = P^q on the refined mesh, 0 in the components that Gamma_D fixes, with
+/// For z in W = P^q on the refined mesh, 0 in the components that Gamma_D fixes and a rigid motion on each
+/// rigid part, with
 ///     (grad z, grad v) + sum_k (1/h_k) ([z], [v])_k = <R(u), v>   for all v in W, k the segments of C,
 ///     <R(u), v> = L(v) - a(u, v) + (T(u), [v])_C,
 /// ||z||_{C,h} <= ||R(u)||_*, with equality in the limit as W grows. h_k, and gamma in T(u), are those of the
@@ -83,15 +84,23 @@ class DualNorm
   /// The terms of springs.
   void add_springs(const std::vector<char>& fixed, algebra::Triplets& entries) const;
   void add_contact_load(std::span<const double> u, std::span<double> vector) const;
+  /// z in W, 0 in fixed components and on rigid parts, with (z, w) = functional for all such w.
+  [[nodiscard]] std::vector<double> riesz(std::span<const double> functional);
+  /// (z, phi_i) for every degree of freedom; without rigid parts only the free ones.
+  [[nodiscard]] std::vector<double> product(std::span<const double> z) const;
+  /// Moves the rigid parts so that (z, w) = functional for their motions, too.
+  void move_parts(std::span<const double> functional, std::vector<double>& z);
 
   const contact::NitscheForm<dim>& form_;
   int n_refinements_;
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
   contact::Springs<dim> springs_;
+  contact::RigidParts<dim> parts_;
   std::vector<double> load_;  ///< L(phi_i) + (K u_0, phi_i)_S; computed when first needed
   std::vector<RefinedSegment<dim>> segments_;
   std::vector<Operator> operators_;
+  std::unique_ptr<algebra::SparseMatrix> whole_;  ///< without fixed nodes; with rigid parts
 };
 
 /// bound / dual_norm, at least 1 by the theorem; nothing if both are below norms.round_off or 1e-10

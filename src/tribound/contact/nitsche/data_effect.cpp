@@ -100,7 +100,7 @@ double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<di
     traction += map.measure * std::pow(largest_value(traction_datum(problem, mesh, facet), map), 2);
     Datum<dim> prescribed;
     for (int i = 0; i < dim; ++i)
-      if (boundary.fixes(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
+      if (boundary.clamps(i)) prescribed.terms.push_back({&*boundary.displacement[i], Point<dim>::Unit(i)});
     displacement = std::max(displacement, largest_value(prescribed, map));
   }
   mesh.ranks().sum(std::span(sums));

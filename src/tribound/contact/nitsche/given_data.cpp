@@ -24,7 +24,7 @@ Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh
   Point<dim> against_normal = -mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
   for (int i = 0; i < dim; ++i)
   {
-    if (boundary.fixes(i))
+    if (boundary.clamps(i))
       against_normal[i] = 0;
     else if (!boundary.traction[i].is_zero())
       datum.terms.push_back({&boundary.traction[i], Point<dim>::Unit(i)});

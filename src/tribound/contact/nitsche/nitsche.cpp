@@ -36,6 +36,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       segments_(std::move(segments)),
       data_(problem, space.mesh(), space.degree(), segments_, accuracy),
       springs_(problem, space),
+      rigid_parts_(problem, space),
       load_(assemble_load(data_, space)),
       n_owned_segments_(std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
                                               { return is_owned(space.mesh(), segment); })),
@@ -46,8 +47,27 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
 {
   add_initial_stress<dim>(data_, space, load_);
   springs_.add_rest(load_);
+  rigid_parts_.add_load(load_);
   look_for_bonds();
   space.mesh().ranks().together([this] { find_initial_tractions(); });
+}
+
+template <int dim>
+void NitscheForm<dim>::prescribe(std::span<double> u) const
+{
+  const std::vector<double> motions = rigid_parts_.along(u);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (constraints_.fixed[i]) u[i] = constraints_.values[i];
+  rigid_parts_.set(motions, u);
+}
+
+template <int dim>
+void NitscheForm<dim>::keep_free(std::span<double> vector) const
+{
+  const std::vector<double> motions = rigid_parts_.along(vector);
+  for (std::size_t i = 0; i < vector.size(); ++i)
+    if (constraints_.fixed[i]) vector[i] = 0;
+  rigid_parts_.set(motions, vector);
 }
 
 template <int dim>

@@ -13,6 +13,7 @@
 #include "tribound/contact/nitsche/contact_history.h"
 #include "tribound/contact/nitsche/discrete_data.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/rigid_parts.h"
 #include "tribound/contact/nitsche/segment_values.h"
 #include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/quadrature.h"
@@ -103,9 +104,17 @@ class NitscheForm
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
   [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }
   [[nodiscard]] const Springs<dim>& springs() const { return springs_; }
+  [[nodiscard]] const RigidParts<dim>& rigid_parts() const { return rigid_parts_; }
+  /// The degrees of freedom of rigid parts are among the fixed ones.
   [[nodiscard]] const fem::Constraints& constraints() const { return constraints_; }
+  /// Gives u the prescribed values at fixed degrees of freedom; rigid parts keep their motion.
+  void prescribe(std::span<double> u) const;
+  /// Sets a vector to 0 at fixed degrees of freedom; on rigid parts to the nodal forces with the same work in
+  /// their motions, or to the nearest rigid motion.
+  void keep_free(std::span<double> vector) const;
   [[nodiscard]] double gamma0() const { return gamma0_; }
-  /// L(phi_i) + (K u_0, phi_i)_S - (sigma_0, grad phi_i) for every degree of freedom, fixed ones included.
+  /// L(phi_i) + (K u_0, phi_i)_S - (sigma_0, grad phi_i) for every degree of freedom, fixed ones included. L
+  /// has the forces on rigid parts, as RigidParts::add_load().
   [[nodiscard]] std::span<const double> load() const { return load_; }
 
   [[nodiscard]] std::span<const ContactSegment<dim>> segments() const { return segments_; }
@@ -231,6 +240,7 @@ class NitscheForm
   std::vector<ContactSegment<dim>> segments_;
   DiscreteData<dim> data_;
   Springs<dim> springs_;
+  RigidParts<dim> rigid_parts_;
   std::vector<double> load_;
   std::size_t n_owned_segments_;
   std::vector<ContactPoint<dim>> points_;

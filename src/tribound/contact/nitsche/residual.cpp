@@ -28,8 +28,7 @@ std::vector<double> residual(const NitscheForm<dim>& form, std::span<const doubl
                              std::span<const Point<dim>> t)
 {
   std::vector<double> r = unconstrained_residual(form, u, t);
-  for (std::size_t i = 0; i < r.size(); ++i)
-    if (form.constraints().fixed[i]) r[i] = 0;
+  form.keep_free(r);
   return r;
 }
 

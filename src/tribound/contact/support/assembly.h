@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "tribound/contact/nitsche/rigid_modes.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/support/body.h"
-#include "tribound/contact/support/rigid_modes.h"
 #include "tribound/fem/space.h"
 #include "tribound/problem/problem.h"
 

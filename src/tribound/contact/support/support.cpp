@@ -6,7 +6,7 @@
 #include <map>
 #include <variant>
 
-#include "tribound/contact/support/holding_points.h"
+#include "tribound/contact/support/holds.h"
 
 namespace tribound::contact
 {
@@ -97,12 +97,10 @@ Eigen::MatrixXd Support<dim>::fixed_gram() const
     {
       const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
       if (!condition.holds_any()) continue;
-      const Point<dim> normal = mesh::facet_geometry(mesh_, facet.cell, facet.local).normal;
-      for (const Point<dim>& x : holding_points(condition, mesh_, facet))
-      {
-        const Eigen::MatrixXd z = condition.held(x, normal) * assembly_.modes.at(x);
-        grams.add({facet.tag, b}, assembly_.coefficients(b), z);
-      }
+      for_each_hold(condition, mesh_, facet, assembly_.modes,
+                    [&](const auto& rows) {
+                      grams.add({facet.tag, b}, assembly_.coefficients(b), rows);
+                    });
     }
   add_segments(mesh_, segments_, assembly_, grams,
                [](const problem::FrictionCone& law, const Point<dim>& n, const auto& z)

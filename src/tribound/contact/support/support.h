@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "tribound/contact/nitsche/rigid_modes.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/support/assembly.h"
-#include "tribound/contact/support/rigid_modes.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 

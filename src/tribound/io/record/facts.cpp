@@ -117,6 +117,29 @@ std::string describe(const problem::Material& material, int dimension, const pro
                      expansion, model);
 }
 
+/// "rigid part, force (0, -100) N, moment 5 N m about (0, 0), without x, rz"
+template <int dim>
+std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Units& units)
+{
+  constexpr std::array<std::string_view, 6> in_space = {"x", "y", "z", "rx", "ry", "rz"};
+  constexpr std::array<std::string_view, 3> in_plane = {"x", "y", "rz"};
+  const auto list = [](const auto& fields)
+  {
+    std::string words;
+    for (const problem::Field& field : fields) words += (words.empty() ? "" : ", ") + problem::words(field);
+    return fields.size() > 1 ? "(" + words + ")" : words;
+  };
+  std::string words = "rigid part, force " + list(part.force) + units.behind(UnitOf::force, dim);
+  if (!std::ranges::all_of(part.moment, &problem::Field::is_zero))
+    words += fmt::format(", moment {}{} about ({:g})", list(part.moment), units.behind(UnitOf::moment, dim),
+                         fmt::join(part.point, ", "));
+  std::string fixed;
+  for (std::size_t i = 0; i < part.fixed.size(); ++i)
+    if (part.fixed[i])
+      fixed += fmt::format("{}{}", fixed.empty() ? "" : ", ", dim == 2 ? in_plane[i] : in_space[i]);
+  return fixed.empty() ? words : words + ", fixed in " + fixed;
+}
+
 template <int dim>
 std::string describe(const problem::BoundaryCondition<dim>& condition, const problem::Units& units)
 {
@@ -130,10 +153,11 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
     for (int i = 0; i < dim; ++i) list += (i == 0 ? "" : ", ") + component(i);
     return "(" + list + ")";
   };
-  if (condition.fixes_any())
+  if (condition.rigid) add(rigid_words(*condition.rigid, units));
+  if (condition.clamps_any())
     add("displacement " +
         vector([&](int i)
-               { return condition.fixes(i) ? problem::words(*condition.displacement[i]) : "free"; }) +
+               { return condition.clamps(i) ? problem::words(*condition.displacement[i]) : "free"; }) +
         length);
   if (std::ranges::any_of(condition.traction, [](const problem::Field& t) { return !t.is_zero(); }))
     add("traction " + vector([&](int i) { return problem::words(condition.traction[i]); }) + stress);

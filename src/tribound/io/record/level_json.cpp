@@ -136,6 +136,9 @@ void add_results(Json& object, const LevelRecord& level)
   object["identities"] = json(level.identities);
   object["energy"] = level.figures.energy;
   if (level.figures.spring_energy) object["spring_energy"] = *level.figures.spring_energy;
+  for (const RigidFigures& part : level.figures.rigid_parts)
+    object["rigid_parts"].push_back(
+        {{"boundary", part.boundary}, {"displacement", part.displacement}, {"rotation", part.rotation}});
   object["sigma_norm"] = level.figures.sigma_norm;
   add_energy_error(object, level);
   object["max_displacement"] = level.figures.max_displacement;

@@ -198,6 +198,10 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     figures.sigma_norm = level.norms.sigma;
   }
   if (form.problem().has_springs()) figures.spring_energy = form.springs().energy(level.u);
+  for (const contact::PartMotion<dim>& part : form.rigid_parts().motions(form.problem(), level.u))
+    figures.rigid_parts.push_back({form.problem().boundary(part.tag).name,
+                                   {part.translation.begin(), part.translation.end()},
+                                   {part.rotation.begin(), part.rotation.end()}});
   for (std::size_t node = 0; node < level.u.size(); node += dim)
     figures.max_displacement = std::max(figures.max_displacement, Point<dim>(level.u.data() + node).norm());
   figures.max_displacement = form.space().mesh().ranks().max(figures.max_displacement);

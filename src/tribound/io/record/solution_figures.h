@@ -75,6 +75,14 @@ struct Sliding
 /// below 1e-10 N, counts as zero; the numbers have the digits that the resolution justifies.
 [[nodiscard]] std::optional<Sliding> sliding(const Resultants& resultants);
 
+/// How a rigid part of the boundary moves.
+struct RigidFigures
+{
+  std::string boundary;
+  std::vector<double> displacement;  ///< of its point
+  std::vector<double> rotation;      ///< small; 2D: one number, positive from x to y
+};
+
 /// Figures to compare discrete solutions.
 struct SolutionFigures
 {
@@ -86,6 +94,7 @@ struct SolutionFigures
   std::vector<BodyFigures> bodies;           ///< where there are bodies in contact
   double round_off = 0.0;                    ///< a smaller stress is mere rounding
   std::optional<double> spring_energy{};     ///< (K (u - u_0), u - u_0)_S, not halved; with springs
+  std::vector<RigidFigures> rigid_parts{};
 };
 
 /// The figures of the solution on a level, with the contact traction T(u). Forces have only the known digits

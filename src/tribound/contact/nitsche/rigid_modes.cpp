@@ -1,4 +1,4 @@
-#include "tribound/contact/support/rigid_modes.h"
+#include "tribound/contact/nitsche/rigid_modes.h"
 
 #include <fmt/format.h>
 
