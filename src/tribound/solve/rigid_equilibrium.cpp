@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tribound/base/dense_factors.h"
-#include "tribound/base/error.h"
+#include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/solve/equilibrium.h"
 
@@ -67,37 +66,43 @@ class RigidEquilibrium final : public Equilibrium<dim>
   {
     constexpr double tight = 1e-12;  // of the forces that a motion of a part causes
     const contact::RigidParts<dim>& parts = form_->rigid_parts();
-    const std::vector<Point<dim>> at_rest = contact.traction(*form_, std::vector<double>(d.size(), 0.0));
-    const auto n = static_cast<Eigen::Index>(parts.size());
-
+    const Tangent tangent{*form_, contact, contact.traction(*form_, std::vector<double>(d.size(), 0.0))};
     algebra::LinearSolve result = held_->solve(contact, without_parts(r), tolerance, d, small_enough);
-    std::vector<std::vector<double>> moved(parts.size());
-    Eigen::MatrixXd work(n, n);  // of the forces of moved[j] in chi_i
+    contact::PartMotions motions;
     for (std::size_t j = 0; j < parts.size(); ++j)
     {
-      std::vector<double> unit(parts.size(), 0.0);
-      unit[j] = 1;
-      moved[j].assign(d.size(), 0.0);
-      parts.add(unit, moved[j]);
-      std::vector<double> rhs = without_parts(tangent_forces(contact, at_rest, moved[j]));
-      for (double& force : rhs) force = -force;
-      std::vector<double> answer(d.size(), 0.0);
-      result.iterations += held_->solve(contact, rhs, tight * norm(rhs), answer, {}).iterations;
-      for (std::size_t i = 0; i < answer.size(); ++i) moved[j][i] += answer[i];
-      const std::vector<double> forces = parts.along(tangent_forces(contact, at_rest, moved[j]));
-      std::ranges::copy(forces, work.col(static_cast<Eigen::Index>(j)).begin());
+      std::vector<double> motion = parts.motion(j);
+      const std::vector<double> forces = without_parts(tangent(motion));
+      std::vector<double> others(motion.size(), 0.0);
+      result.iterations += held_->solve(contact, forces, tight * norm(forces), others, {}).iterations;
+      for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
+      const std::vector<double> work = parts.along(tangent(motion));
+      motions.add(std::move(motion), work);
     }
-    const std::vector<double> wanted = parts.along(r);
-    const std::vector<double> reached = parts.along(tangent_forces(contact, at_rest, d));
-    Eigen::VectorXd missing(n);
-    for (Eigen::Index i = 0; i < n; ++i) missing[i] = wanted[i] - reached[i];
-    const Eigen::VectorXd by = solve_regular(require_regular(work), missing);
-    for (std::size_t j = 0; j < moved.size(); ++j)
-      for (std::size_t i = 0; i < d.size(); ++i) d[i] += by[static_cast<Eigen::Index>(j)] * moved[j][i];
+    std::vector<double> missing = tangent(d);
+    for (std::size_t i = 0; i < d.size(); ++i) missing[i] = r[i] - missing[i];
+    motions.move(parts.along(missing), d);
     return result;
   }
 
  private:
+  /// w to a(w, phi_i) - (DT_lin[w], [phi_i])_C.
+  struct Tangent
+  {
+    const contact::NitscheForm<dim>& form;
+    const Linearised<dim>& contact;
+    std::vector<Point<dim>> at_rest;  ///< T_lin(0)
+
+    [[nodiscard]] std::vector<double> operator()(std::span<const double> w) const
+    {
+      std::vector<Point<dim>> t = contact.traction(form, w);
+      for (std::size_t k = 0; k < t.size(); ++k) t[k] = at_rest[k] - t[k];
+      std::vector<double> result = contact::internal_forces<dim>(form, w);
+      form.add_contact_load(t, result);
+      return result;
+    }
+  };
+
   /// 0 at all fixed degrees of freedom.
   [[nodiscard]] std::vector<double> without_parts(std::span<const double> vector) const
   {
@@ -105,27 +110,6 @@ class RigidEquilibrium final : public Equilibrium<dim>
     for (std::size_t i = 0; i < result.size(); ++i)
       if (form_->constraints().fixed[i]) result[i] = 0;
     return result;
-  }
-
-  /// a(w, phi_i) - (DT_lin[w], [phi_i])_C; `at_rest`: T_lin(0).
-  [[nodiscard]] std::vector<double> tangent_forces(const Linearised<dim>& contact,
-                                                   std::span<const Point<dim>> at_rest,
-                                                   std::span<const double> w) const
-  {
-    std::vector<Point<dim>> t = contact.traction(*form_, w);
-    for (std::size_t k = 0; k < t.size(); ++k) t[k] = at_rest[k] - t[k];
-    std::vector<double> result = contact::internal_forces<dim>(*form_, w);
-    form_->add_contact_load(t, result);
-    return result;
-  }
-
-  static const Eigen::MatrixXd& require_regular(const Eigen::MatrixXd& work)
-  {
-    constexpr double rounding = 1e-13;
-    const Eigen::VectorXd values = right_singular(work).values;
-    if (values.size() > 0 && !(values.minCoeff() > rounding * values.maxCoeff()))
-      throw SolveError("the matrix is singular: nothing stops a motion of a rigid part");
-    return work;
   }
 
   const contact::NitscheForm<dim>* form_;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tribound/algebra/petsc.h"
-#include "tribound/base/dense_factors.h"
 #include "tribound/contact/nitsche/elasticity.h"
 
 namespace tribound::certify
@@ -112,23 +111,20 @@ std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::sp
 }
 
 template <int dim>
-void ElasticSystem<dim>::find_moved() const
+void ElasticSystem<dim>::find_motions() const
 {
   constexpr double tight = 1e-13;  // of the forces that a motion of a part causes
-  work_.resize(static_cast<Eigen::Index>(parts_.size()), static_cast<Eigen::Index>(parts_.size()));
   for (std::size_t j = 0; j < parts_.size(); ++j)
   {
-    std::vector<double>& moved = moved_.emplace_back(space_.n_dofs(), 0.0);
-    std::vector<double> unit(parts_.size(), 0.0);
-    unit[j] = 1;
-    parts_.add(unit, moved);
-    std::vector<double> r = internal_forces(moved);
+    std::vector<double> motion = parts_.motion(j);
+    std::vector<double> r = internal_forces(motion);
     release(r);
     std::vector<double> others(r.size(), 0.0);
     (void)factors_->linear.solve(factors_->matrix, r, tight * space_.norm(r), others);
     release(others);
-    for (std::size_t i = 0; i < others.size(); ++i) moved[i] -= others[i];
-    std::ranges::copy(parts_.along(internal_forces(moved)), work_.col(static_cast<Eigen::Index>(j)).begin());
+    for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
+    const std::vector<double> work = parts_.along(internal_forces(motion));
+    motions_.add(std::move(motion), work);
   }
 }
 
@@ -136,14 +132,10 @@ void ElasticSystem<dim>::find_moved() const
 template <int dim>
 void ElasticSystem<dim>::move_parts(std::span<const double> b, std::span<double> u) const
 {
-  if (moved_.empty()) find_moved();
-  std::vector<double> lacking = internal_forces(u);
-  for (std::size_t i = 0; i < lacking.size(); ++i) lacking[i] = b[i] - lacking[i];
-  const std::vector<double> in_motions = parts_.along(lacking);
-  const Eigen::VectorXd by =
-      solve_regular(work_, Eigen::Map<const Eigen::VectorXd>(in_motions.data(), work_.rows()));
-  for (std::size_t j = 0; j < moved_.size(); ++j)
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] += by[static_cast<Eigen::Index>(j)] * moved_[j][i];
+  if (motions_.empty()) find_motions();
+  std::vector<double> missing = internal_forces(u);
+  for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = b[i] - missing[i];
+  motions_.move(parts_.along(missing), u);
 }
 
 template class ElasticSystem<2>;

@@ -9,6 +9,7 @@
 
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/triplets.h"
+#include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/contact/nitsche/rigid_parts.h"
 #include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/space.h"
@@ -46,7 +47,7 @@ class ElasticSystem
   [[nodiscard]] std::vector<double> internal_forces(std::span<const double> u) const;
   /// Sets 0 at fixed degrees of freedom.
   void release(std::span<double> vector) const;
-  void find_moved() const;
+  void find_motions() const;
   void move_parts(std::span<const double> b, std::span<double> u) const;
 
   const problem::Problem<dim>& problem_;
@@ -55,8 +56,7 @@ class ElasticSystem
   contact::RigidParts<dim> parts_;
   std::vector<char> fixed_;
   std::unique_ptr<Factors> factors_;
-  mutable std::vector<std::vector<double>> moved_;  ///< chi_j, and how all else follows; once they are needed
-  mutable Eigen::MatrixXd work_;                    ///< of their forces in chi_i
+  mutable contact::PartMotions motions_;  ///< once they are needed
 };
 
 }  // namespace tribound::certify

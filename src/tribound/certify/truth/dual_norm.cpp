@@ -2,9 +2,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "tribound/base/dense_factors.h"
 #include "tribound/base/norm.h"
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 
@@ -284,25 +284,18 @@ std::vector<double> DualNorm<dim>::product(std::span<const double> z) const
 template <int dim>
 void DualNorm<dim>::move_parts(std::span<const double> functional, std::vector<double>& z)
 {
-  const auto n = static_cast<Eigen::Index>(parts_.size());
-  std::vector<std::vector<double>> moved;
-  Eigen::MatrixXd products(n, n);
-  for (Eigen::Index j = 0; j < n; ++j)
+  contact::PartMotions motions;
+  for (std::size_t j = 0; j < parts_.size(); ++j)
   {
-    std::vector<double> unit(parts_.size(), 0.0);
-    unit[j] = 1;
-    std::vector<double>& w = moved.emplace_back(space_.n_dofs(), 0.0);
-    parts_.add(unit, w);
-    const std::vector<double> others = riesz(product(w));
-    for (std::size_t i = 0; i < w.size(); ++i) w[i] -= others[i];
-    std::ranges::copy(parts_.along(product(w)), products.col(j).begin());
+    std::vector<double> motion = parts_.motion(j);
+    const std::vector<double> others = riesz(product(motion));
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] -= others[i];
+    const std::vector<double> work = parts_.along(product(motion));
+    motions.add(std::move(motion), work);
   }
-  std::vector<double> lacking = product(z);
-  for (std::size_t i = 0; i < lacking.size(); ++i) lacking[i] = functional[i] - lacking[i];
-  const std::vector<double> in_motions = parts_.along(lacking);
-  const Eigen::VectorXd by = solve_regular(products, Eigen::Map<const Eigen::VectorXd>(in_motions.data(), n));
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] += by[j] * moved[j][i];
+  std::vector<double> missing = product(z);
+  for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = functional[i] - missing[i];
+  motions.move(parts_.along(missing), z);
 }
 
 /// With z from an inexact solver, <R, z> / ||z|| is still below the dual norm; ||z|| might not be.

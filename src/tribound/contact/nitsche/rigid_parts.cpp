@@ -228,6 +228,16 @@ std::vector<double> RigidParts<dim>::along(std::span<const double> vector) const
 }
 
 template <int dim>
+std::vector<double> RigidParts<dim>::motion(std::size_t i) const
+{
+  std::vector<double> unit(n_motions_, 0.0);
+  unit[i] = 1;
+  std::vector<double> result(space_->n_dofs(), 0.0);
+  add(unit, result);
+  return result;
+}
+
+template <int dim>
 void RigidParts<dim>::add(std::span<const double> r, std::span<double> vector) const
 {
   for (const Node& node : nodes_)

@@ -48,6 +48,8 @@ class RigidParts
 
   /// chi_i . vector, of all ranks: the work in each motion; of a displacement the r of sum_i r_i chi_i.
   [[nodiscard]] std::vector<double> along(std::span<const double> vector) const;
+  /// chi_i.
+  [[nodiscard]] std::vector<double> motion(std::size_t i) const;
   /// vector += sum_i r_i chi_i.
   void add(std::span<const double> r, std::span<double> vector) const;
   /// Sets the entries on the parts to sum_i r_i chi_i.
