@@ -14,7 +14,8 @@ Refusal point_loads()
       .hint =
           "traction = force / area on a boundary; in place of a point, a patch of given radius around it: "
           "traction = [0, \"abs(x - 1) < 0.1 ? -5/0.2 : 0\"], in 3D "
-          "[0, 0, \"(x - 1)^2 + y^2 < 0.1^2 ? -5/(pi*0.1^2) : 0\"]"};
+          "[0, 0, \"(x - 1)^2 + y^2 < 0.1^2 ? -5/(pi*0.1^2) : 0\"]; on a stiff part: rigid = { force = "
+          "[0, -5], point = [1, 0] }"};
 }
 
 Value truth()
