@@ -39,13 +39,12 @@ RigidParts<dim>::RigidParts(const problem::Problem<dim>& problem, const fem::Lag
   if (!problem.has_rigid_parts()) return;
   const auto boundaries = problem.boundaries();
   for (int tag = 0; tag < static_cast<int>(boundaries.size()); ++tag)
-    if (boundaries[tag].rigid) parts_.push_back({tag, {}, {}});
+    if (boundaries[tag].rigid) parts_.push_back({tag, {}, {}, {}});
   const Ranks& ranks = space.mesh().ranks();
   find_nodes(problem);
   find_motions(problem);
   check_bodies(problem);
   ranks.together([&] { check_neighbours(problem); });
-  find_load(problem);
 }
 
 namespace
@@ -156,6 +155,7 @@ void RigidParts<dim>::find_motions(const problem::Problem<dim>& problem)
     part.motions = left * eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
     part.first = n_motions_;
     n_motions_ += part.motions.cols();
+    find_load(*problem.boundary(part.tag).rigid, gram(k), part);
   }
 }
 
@@ -193,21 +193,28 @@ void RigidParts<dim>::check_neighbours(const problem::Problem<dim>& problem) con
   for_each_fixed_node(problem, *space_, check);
 }
 
+/// `gram`: the products of the modes over the nodes of the part.
 template <int dim>
-void RigidParts<dim>::find_load(const problem::Problem<dim>& problem)
+void RigidParts<dim>::find_load(const problem::RigidPart<dim>& rigid, const Eigen::MatrixXd& gram, Part& part)
 {
-  load_.reserve(n_motions_);
-  for (const Part& part : parts_)
+  Point<dim> force;
+  for (int a = 0; a < dim; ++a) force[a] = rigid.force[a](rigid.point);
+  Eigen::VectorXd work = part.modes.at(rigid.point).transpose() * force;
+  for (std::size_t a = 0; a < rigid.moment.size(); ++a)
+    work[static_cast<Eigen::Index>(dim + a)] += rigid.moment[a](rigid.point) / part.modes.size;
+  part.forces = solve_regular(gram, work);
+  const Eigen::VectorXd in_motions = part.motions.transpose() * work;
+  load_.insert(load_.end(), in_motions.begin(), in_motions.end());
+}
+
+template <int dim>
+void RigidParts<dim>::add_load(std::span<double> vector) const
+{
+  for (const Node& node : nodes_)
   {
-    const problem::RigidPart<dim>& rigid = *problem.boundary(part.tag).rigid;
-    Eigen::Matrix<double, RigidModes<dim>::n_modes, 1> work;
-    Point<dim> force;
-    for (int a = 0; a < dim; ++a) force[a] = rigid.force[a](rigid.point);
-    work = part.modes.at(rigid.point).transpose() * force;
-    for (std::size_t a = 0; a < rigid.moment.size(); ++a)
-      work[dim + a] += rigid.moment[a](rigid.point) / part.modes.size;
-    const Eigen::VectorXd in_motions = part.motions.transpose() * work;
-    load_.insert(load_.end(), in_motions.begin(), in_motions.end());
+    const Part& part = parts_[node.part];
+    const Point<dim> force = part.modes.at(node.x) * part.forces;
+    for (int a = 0; a < dim; ++a) vector[dim * node.node + a] += force[a];
   }
 }
 

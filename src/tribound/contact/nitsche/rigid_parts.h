@@ -54,8 +54,8 @@ class RigidParts
   void add(std::span<const double> r, std::span<double> vector) const;
   /// Sets the entries on the parts to sum_i r_i chi_i.
   void set(std::span<const double> r, std::span<double> vector) const;
-  /// Adds nodal forces that do the work of the given forces and moments.
-  void add_load(std::span<double> vector) const { add(load_, vector); }
+  /// Adds nodal forces with the given forces and moments, also along motions that are fixed.
+  void add_load(std::span<double> vector) const;
   /// The work of the given forces and moments in chi_i.
   [[nodiscard]] std::span<const double> load() const { return load_; }
   /// Per degree of freedom: 1 on the parts.
@@ -70,6 +70,7 @@ class RigidParts
     int tag;                  ///< of the boundary
     RigidModes<dim> modes;    ///< about the middle of the part
     Eigen::MatrixXd motions;  ///< chi_i by columns: coefficients of the modes
+    Eigen::VectorXd forces;   ///< nodal forces of the load, likewise
     std::size_t first = 0;    ///< its motions are number first, ...
 
     [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> at(const Point<dim>& x) const
@@ -92,7 +93,7 @@ class RigidParts
   void find_motions(const problem::Problem<dim>& problem);
   void check_bodies(const problem::Problem<dim>& problem) const;
   void check_neighbours(const problem::Problem<dim>& problem) const;
-  void find_load(const problem::Problem<dim>& problem);
+  void find_load(const problem::RigidPart<dim>& rigid, const Eigen::MatrixXd& gram, Part& part);
 
   const fem::LagrangeSpace<dim>* space_;
   std::vector<Part> parts_;
