@@ -172,6 +172,7 @@ std::vector<ContactBoundaryFacts> contact_boundary_facts(const contact::NitscheF
   {
     if (form.problem().contact(tag) == nullptr) continue;
     ContactBoundaryFacts facts = Collector<dim>(form, tag).collect(neighbours);
+    facts.is_bilateral = cone(form.problem().contact(tag)->law).is_bilateral;
     if (facts.facets > 0) result.push_back(std::move(facts));
   }
   return result;

@@ -29,6 +29,7 @@ struct ContactBoundaryFacts
   Place smallest_gap_at;
   double largest_gap = 0;
   Place largest_gap_at;
+  bool is_bilateral = false;  ///< sliders and ties: nothing opens, the gap is a prescribed displacement
 };
 
 /// The angle between two unit vectors, degrees.

@@ -66,11 +66,18 @@ void add_supports(const Diagnosis& diagnosis, Findings& findings)
 {
   if (diagnosis.beyond_contact) findings.push_back(load_beyond(*diagnosis.beyond_contact));
   for (const ContactHeldMotion& motion : diagnosis.held_by_contact) findings.push_back(held(motion));
-  if (diagnosis.held_by_contact.empty())
-    findings.push_back({.code = "held",
-                        .text = diagnosis.loads.has_springs
-                                    ? "displacement conditions and springs stop every rigid motion"
-                                    : "displacement conditions alone stop every rigid motion"});
+  if (!diagnosis.held_by_contact.empty()) return;
+  const bool has_sliders = std::ranges::any_of(
+      diagnosis.contacts, [](const ContactBoundaryFacts& facts) { return facts.is_bilateral; });
+  const bool has_springs = diagnosis.loads.has_springs;
+  findings.push_back({.code = "held",
+                      .text = fmt::format("displacement conditions{}{} stop every rigid motion",
+                                          !has_sliders  ? ""
+                                          : has_springs ? ", sliders"
+                                                        : " and sliders",
+                                          has_springs    ? " and springs"
+                                          : !has_sliders ? " alone"
+                                                         : "")});
 }
 
 /// What gives loads.strain(), in words.

@@ -165,11 +165,11 @@ std::vector<Finding> contact_findings(const Diagnosis& diagnosis)
     result.push_back(corner_finding(corner, unit));
   for (const ContactBoundaryFacts& contact : diagnosis.contacts)
   {
-    result.push_back(facets_finding(contact, diagnosis.refines));
+    if (!contact.is_bilateral) result.push_back(facets_finding(contact, diagnosis.refines));
     result.push_back(surface_finding(contact));
     if (auto straightened = straightened_finding(contact, unit)) result.push_back(std::move(*straightened));
     if (auto direction = direction_finding(contact)) result.push_back(std::move(*direction));
-    result.push_back(gap_finding(contact, diagnosis.loads.size, unit));
+    if (!contact.is_bilateral) result.push_back(gap_finding(contact, diagnosis.loads.size, unit));
   }
   return result;
 }

@@ -188,8 +188,15 @@ double displacement_range(const contact::NitscheForm<dim>& form)
   return range;
 }
 
+/// The components of a force that no displacement condition takes up.
 template <int dim>
-using Condition = problem::BoundaryCondition<dim>;
+Point<dim> left_to_springs(const problem::Problem<dim>& problem, Point<dim> force)
+{
+  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
+    for (int component = 0; component < dim; ++component)
+      if (boundary.fixes(component)) force[component] = 0;
+  return force;
+}
 
 /// How far a force moves what the springs hold along it; 0 without springs.
 template <int dim>
@@ -239,10 +246,16 @@ LoadFacts load_facts(const contact::NitscheForm<dim>& form)
   facts.body_stress = facts.largest_body_force * facts.size;
   facts.has_springs = problem.has_springs();
   facts.displacement_strain = displacement_range(form) / facts.size;
-  if (!problem.has_contact() && std::ranges::none_of(problem.boundaries(), &Condition<dim>::clamps_any))
-    facts.spring_shift = shift_on(form.springs(), resultant) / facts.size;
-  for (const contact::ContactPoint<dim>& point : form.contact_points())
-    facts.interference_strain = std::max(facts.interference_strain, -point.gap / facts.size);
+  if (!problem.has_contact())
+    facts.spring_shift = shift_on(form.springs(), left_to_springs<dim>(problem, resultant)) / facts.size;
+  for (std::size_t i = 0; i < form.n_contact_points(); ++i)
+  {
+    const double gap = form.contact_points()[i].gap / facts.size;
+    if (cone(form.segments()[i / form.n_segment_points()].contact->law).is_bilateral)
+      facts.displacement_strain = std::max(facts.displacement_strain, std::abs(gap));
+    else
+      facts.interference_strain = std::max(facts.interference_strain, -gap);
+  }
   measure_initial_stress(form, facts);
   facts.suction = find_suction(form);
   return facts;

@@ -51,11 +51,12 @@ struct LoadFacts
   double support_stress = 0;       ///< |int f + int g_N| over the area held by contact or displacements
   double body_stress = 0;          ///< max |f| L
   double displacement_strain = 0;  ///< range of a component, prescribed or of springs at rest, / L; it
-                                   ///< includes 0 with contact and springs
+                                   ///< includes 0 with contact and springs; or of a slider's motion
   double interference_strain = 0;  ///< the largest interference, -g, / L
   double thermal_strain = 0;       ///< largest |alpha (temperature - reference)|
   double initial_stress = 0;       ///< largest |sigma_0| but for temperature
-  /// |int f + int g_N| / (L int |K|): how far the loads move what springs alone hold, / L; else 0.
+  /// |F| / (L int |K|), F the components of int f + int g_N that no displacement condition takes up: how far
+  /// the loads move what springs alone hold, / L; 0 with contact.
   double spring_shift = 0;
   bool has_springs = false;
   std::vector<Suction> suction;

@@ -181,6 +181,22 @@ TEST(Findings, LoadsAgainstStiffness)
               HasSubstr("prescribed displacements of 0.2 over the size 2"));
 }
 
+TEST(Findings, Sliders)
+{
+  doctor::Diagnosis diagnosis = healthy();
+  diagnosis.contacts[0].is_bilateral = true;
+  diagnosis.contacts[0].facets = 1;
+  diagnosis.contacts[0].smallest_gap = diagnosis.contacts[0].largest_gap = 5;
+  EXPECT_TRUE(std::ranges::none_of(doctor::findings(diagnosis), [](const doctor::Finding& f)
+                                   { return f.code == "gap" || f.code == "contact_facets"; }));
+  EXPECT_EQ(finding(diagnosis, "held").text, "displacement conditions and sliders stop every rigid motion");
+  diagnosis.loads.has_springs = true;
+  EXPECT_EQ(finding(diagnosis, "held").text,
+            "displacement conditions, sliders and springs stop every rigid motion");
+  diagnosis.contacts[0].is_bilateral = false;
+  EXPECT_EQ(finding(diagnosis, "held").text, "displacement conditions and springs stop every rigid motion");
+}
+
 TEST(Findings, SoftSprings)
 {
   doctor::Diagnosis diagnosis = healthy();

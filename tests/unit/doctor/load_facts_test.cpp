@@ -74,6 +74,21 @@ TEST(LoadFacts, PrescribedDisplacements)
   EXPECT_NEAR(pushed.displacement_strain, 0.15, 1e-14);  // the obstacle stays
   const auto moved = facts({fixed<2>("top", 5, -3)});
   EXPECT_NEAR(moved.displacement_strain, 0, 1e-14);  // a rigid motion
+  const auto slid = facts({clamped<2>("left"), obstacle<2>("right", problem::Slider(), 0.3)});
+  EXPECT_NEAR(slid.displacement_strain, 0.15, 1e-14);
+  EXPECT_EQ(slid.interference_strain, 0);
+}
+
+TEST(LoadFacts, WhatSpringsAloneHold)
+{
+  problem::BoundaryCondition<2> ground{.name = "bottom"};
+  ground.spring = problem::Spring<2>{.normal = 0.1};
+  const auto shift = [&](const problem::BoundaryCondition<2>& left) {
+    return facts({left, ground, loaded<2>("top", 0.7, -0.4)}).spring_shift;
+  };
+  EXPECT_NEAR(shift(fixed<2>("left", 0, free)), 2, 1e-13);  // 0.4 over 0.1, of a length of 2
+  EXPECT_EQ(shift(clamped<2>("left")), 0);
+  EXPECT_EQ(shift(obstacle<2>("left", problem::Slider())), 0);  // not known
 }
 
 TEST(LoadFacts, MaterialsAsGiven)
