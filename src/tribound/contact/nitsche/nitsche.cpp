@@ -40,7 +40,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       load_(assemble_load(data_, space)),
       n_owned_segments_(std::ranges::count_if(segments_, [&space](const ContactSegment<dim>& segment)
                                               { return is_owned(space.mesh(), segment); })),
-      points_(make_points()),
+      points_(space.mesh().ranks().together([this] { return make_points(); })),
       tables_(space.basis(), segments_, facet_rule().points),
       nodes_(space.degree(), facet_rule().points),
       node_tables_(space.basis(), segments_, nodes_.nodes())
