@@ -197,6 +197,10 @@ def bad_input_is_told_once():
     result = run_case("bad", 2, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "boundary.top.traction=[0, '-sqrt(1.99 - x)']")
     expect("bad formula", result.returncode == 1 and result.stderr.count("tribound:") == 1 and "boundary.top" in result.stderr,
            result.returncode, result.stderr)
+    slider = "boundary.right={ slider = 0, normal = ['(x < 1.9 || y < 0.9) ? 1 : 0', 1] }"  # only one process has these facets
+    result = run_case("bad", 2, f"{EXAMPLES}/01_tresca_block/case.toml", "--set", slider)
+    expect("bad slider", result.returncode == 1 and "acts at 90 degrees" in result.stderr and "MPI_ABORT" not in result.stderr,
+           result.returncode, result.stderr)
 
 
 def commands_for_one_process():
