@@ -194,7 +194,7 @@ Point<dim> left_to_springs(const problem::Problem<dim>& problem, Point<dim> forc
 {
   for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
     for (int component = 0; component < dim; ++component)
-      if (boundary.fixes(component)) force[component] = 0;
+      if (boundary.clamps(component)) force[component] = 0;
   return force;
 }
 
