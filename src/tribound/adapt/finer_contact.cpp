@@ -210,13 +210,6 @@ std::vector<mesh::FacetCuts> without_slivers(std::vector<mesh::FacetCuts> cuts)
   return cuts;
 }
 
-template <int dim>
-bool any_is_bilateral(std::span<const contact::ContactSegment<dim>> segments)
-{
-  return std::ranges::any_of(segments, [](const contact::ContactSegment<dim>& segment)
-                             { return problem::cone(segment.contact->law).is_bilateral; });
-}
-
 }  // namespace
 
 template <int dim>
@@ -227,7 +220,8 @@ std::unique_ptr<FinerContact<dim>> matching_contact(const contact::NitscheForm<d
   {
     const mesh::Mesh<2>& mesh = form.space().mesh();
     if (contact::facets_match(mesh, form.segments())) return nullptr;
-    const bool all_have_to_match = mesh.ranks().any(any_is_bilateral(form.segments()));
+    const bool all_have_to_match = mesh.ranks().any(std::ranges::any_of(
+        form.segments(), &problem::Contact::is_bilateral, &contact::ContactSegment<2>::contact));
     std::vector<mesh::FacetCuts> cuts = contact::facet_cuts(mesh, form.segments());
     if (!all_have_to_match) cuts = without_slivers(std::move(cuts));
     if (!mesh.ranks().any(!cuts.empty())) return nullptr;

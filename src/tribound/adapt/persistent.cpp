@@ -184,8 +184,8 @@ std::optional<Start<dim>> start_from_scratch(const contact::NitscheForm<dim>& fo
 template <int dim>
 bool is_linear(const contact::NitscheForm<dim>& form)
 {
-  const bool all_hold = std::ranges::all_of(form.segments(), [](const contact::ContactSegment<dim>& segment)
-                                            { return problem::cone(segment.contact->law).is_bilateral; });
+  const bool all_hold = std::ranges::all_of(form.segments(), &problem::Contact::is_bilateral,
+                                            &contact::ContactSegment<dim>::contact);
   return !form.space().mesh().ranks().any(!all_hold);
 }
 

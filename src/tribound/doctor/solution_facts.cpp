@@ -200,7 +200,7 @@ std::vector<ContactOutcome> contact_outcomes(const contact::NitscheForm<dim>& fo
   result.reserve(outcomes.size());
   for (auto& [tag, outcome] : outcomes)
   {
-    if (cone(form.problem().contact(tag)->law).is_bilateral) continue;
+    if (form.problem().contact(tag)->is_bilateral()) continue;
     outcome.damage = damage_facts<dim>(form, states, tag);
     result.push_back(std::move(outcome));
   }

@@ -35,6 +35,14 @@ struct CellMap
   [[nodiscard]] Point<dim> operator()(const Point<dim>& xhat) const { return origin + jacobian * xhat; }
   /// |T|.
   [[nodiscard]] double measure() const { return det / factorial<dim>; }
+  /// grad lambda_i of the barycentric coordinates.
+  [[nodiscard]] std::array<Point<dim>, dim + 1> barycentric_gradients() const
+  {
+    std::array<Point<dim>, dim + 1> gradients;
+    gradients[0] = -inverse_transpose.rowwise().sum();
+    for (int i = 0; i < dim; ++i) gradients[i + 1] = inverse_transpose.col(i);
+    return gradients;
+  }
 };
 
 /// The map x = x_0 + J s from the reference facet onto a facet, from its own vertices alone. A coordinate

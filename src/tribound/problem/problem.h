@@ -70,6 +70,9 @@ struct Contact
   explicit Contact(ContactLaw l, std::optional<Field> g = Field(0.0)) : law(std::move(l)), gap(std::move(g))
   {
   }
+
+  /// Whether it holds tension along N, too.
+  [[nodiscard]] bool is_bilateral() const { return cone(law).is_bilateral; }
 };
 
 /// How the projection Pi of a slave onto its master finds a partner.

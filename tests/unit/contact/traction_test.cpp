@@ -103,6 +103,7 @@ TEST(ContactResultants, OfAConstantTraction)
   EXPECT_NEAR(sum.normal, -1.0, 1e-13);
   EXPECT_NEAR(sum.tangential, 0.6, 1e-13);  // n = (0, -1) turned by +90 degrees is (1, 0)
   EXPECT_NEAR(sum.abs_tangential, 0.6, 1e-13);
+  EXPECT_NEAR(sum.abs_normal, 1.0, 1e-13);
   EXPECT_EQ(contact::contact_resultants<2>(block.c.form, t, 99).normal, 0);
 }
 

@@ -97,8 +97,7 @@ RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& 
     const auto points = mesh::points_of(mesh.vertices(), mesh.cell(cell));
     const double measure = map.measure();
     const auto local = std::ranges::find(mesh.cell(cell), vertex) - mesh.cell(cell).begin();
-    const double slope = local == 0 ? map.inverse_transpose.rowwise().sum().norm()
-                                    : map.inverse_transpose.col(local - 1).norm();
+    const double slope = map.barycentric_gradients()[local].norm();
     size = std::max(size, 1 / slope);  // the size that the patches use, so that both admit the same motions
     Point<dim> sum = Point<dim>::Zero();
     Tensor<dim> squares = Tensor<dim>::Zero();

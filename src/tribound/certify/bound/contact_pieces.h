@@ -3,7 +3,6 @@
 /// @file contact_pieces.h
 /// Pieces of contact segments, into which ContactTerms divides them. Internal to it.
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -48,13 +47,7 @@ template <int dim>
                                                     const problem::NormalField& normal,
                                                     const fem::Part<dim - 1>& part)
 {
-  std::array<double, dim * dim> vertices;
-  for (int i = 0; i < dim; ++i)
-  {
-    const Point<dim> x = map(part[i]);
-    std::ranges::copy(x, vertices.begin() + i * dim);
-  }
-  return problem::deviation(normal, vertices, dim);
+  return problem::deviation(normal, contact::corner_coordinates(map, part), dim);
 }
 
 /// The distance of v - v.N N from P^{p+2}, relative to |v|, for v in P^p; in 2D along the tangent.

@@ -89,9 +89,7 @@ Pencil assemble(const problem::Problem<dim>& problem, const ProofMesh<dim>& proo
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const double volume = map.measure();
     const double stiffness = dim * dim * volume * (proof.pairs.cells.empty() ? 1 : proof.pairs.cells[c]);
-    std::array<Point<dim>, dim + 1> gradients;  // of -lambda_i
-    gradients[0] = map.inverse_transpose.rowwise().sum();
-    for (int i = 0; i < dim; ++i) gradients[i + 1] = -map.inverse_transpose.col(i);
+    const std::array<Point<dim>, dim + 1> gradients = map.barycentric_gradients();
     for (int i = 0; i <= dim; ++i)
       for (int j = 0; j <= dim; ++j)
         add(number[cell_facets[c][i]], number[cell_facets[c][j]], stiffness * gradients[i].dot(gradients[j]),

@@ -27,9 +27,7 @@ std::vector<double> potential_fluxes(const mesh::Mesh<dim>& mesh, std::span<cons
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
     const double volume = map.measure();
-    std::array<Point<dim>, dim + 1> hat_gradients;
-    hat_gradients[0] = -map.inverse_transpose.rowwise().sum();
-    for (int i = 0; i < dim; ++i) hat_gradients[i + 1] = map.inverse_transpose.col(i);
+    const std::array<Point<dim>, dim + 1> hat_gradients = map.barycentric_gradients();
     Point<dim> gradient = Point<dim>::Zero();
     for (int i = 0; i <= dim; ++i) gradient -= dim * means[topology.cell_facets[c][i]] * hat_gradients[i];
     for (int i = 0; i <= dim; ++i)

@@ -79,9 +79,7 @@ struct VertexSystem
   void add_cell(const mesh::Mesh<dim>& mesh, Index c)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    std::array<Point<dim>, dim + 1> gradients;
-    gradients[0] = -map.inverse_transpose.rowwise().sum();
-    for (int i = 0; i < dim; ++i) gradients[i + 1] = map.inverse_transpose.col(i);
+    const std::array<Point<dim>, dim + 1> gradients = map.barycentric_gradients();
     for (int i = 0; i <= dim; ++i)
     {
       const Index v = mesh.cell(c)[i];

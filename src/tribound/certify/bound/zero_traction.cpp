@@ -14,10 +14,8 @@ template <int dim>
 bool is_gap(const problem::Field& gap, const contact::SimplexMap<dim - 1, dim>& map,
             const fem::Part<dim - 1>& part)
 {
-  std::array<double, dim * dim> vertices;
-  for (int i = 0; i < dim; ++i) std::ranges::copy(map(part[i]), vertices.begin() + i * dim);
   std::array<problem::Enclosure, 1> range;
-  gap.enclose(vertices, dim, range);
+  gap.enclose(contact::corner_coordinates(map, part), dim, range);
   return range[0].bounded() && range[0].lower >= 0;
 }
 

@@ -20,9 +20,7 @@ namespace
 template <int k, int dim, int n>
 double largest_value(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map)
 {
-  std::array<double, (k + 1) * dim> vertices;
-  for (int i = 0; i <= k; ++i)
-    std::ranges::copy(map(fem::reference_simplex<k>()[i]), vertices.begin() + i * dim);
+  const std::array<double, (k + 1)* dim> vertices = corner_coordinates(map, fem::reference_simplex<k>());
   Point<n> size = Point<n>::Zero();
   for (const auto& [value, direction] : datum.terms)
   {

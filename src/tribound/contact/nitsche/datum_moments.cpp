@@ -132,12 +132,7 @@ void DatumMoments<k, dim, n>::enclose(const Datum<dim, n>& datum, const SimplexM
   const int order = std::min(fem::data_quadrature_degree(p_), problem::Formula::max_order);
   std::array<problem::Enclosure, problem::Formula::max_order + 1> storage;
   const auto taylor = std::span(storage).first(order + 1);
-  std::array<double, (k + 1) * dim> vertices;
-  for (int i = 0; i <= k; ++i)
-  {
-    const Point<dim> x = map(part.part[i]);
-    std::ranges::copy(x, vertices.begin() + i * dim);
-  }
+  const std::array<double, (k + 1)* dim> vertices = corner_coordinates(map, part.part);
   part.remainder.setZero();
   part.mean_remainder.setZero();
   for (const auto& [value, direction] : datum.terms)
@@ -295,9 +290,8 @@ DatumOnSimplex<k, n> DatumMoments<k, dim, n>::operator()(const Datum<dim, n>& da
   Point<n> missed = Point<n>::Zero();
   for (const auto& part : parts) missed += 2 * measure_of(part, map) * part.mean_remainder;
   result.mean = missed.norm();
-  const std::vector<Point<n>> moments = this->moments(parts);
-  result.oscillation = oscillation(parts, moments, map.measure);
-  if (parts.size() > 1) result.moments = moments;
+  result.moments = moments(parts);
+  result.oscillation = oscillation(parts, result.moments, map.measure);
   return result;
 }
 

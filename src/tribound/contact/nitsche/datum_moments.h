@@ -36,11 +36,13 @@ template <int k, int n>
 struct DatumOnSimplex
 {
   std::vector<DatumPart<k, n>> parts;
-  /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex; empty if the rule on the
-  /// whole simplex gives them.
+  /// (f, theta_j) / |T| on P^{p+1}, theta orthonormal on the reference simplex.
   std::vector<Point<n>> moments;
   double oscillation = 0;  ///< >= ||f - Pi f||, Pi the projection of the moments on the smaller space
   double mean = 0;         ///< >= |integral of f - its moment|
+
+  /// Whether the rule on the whole simplex does not give the moments.
+  [[nodiscard]] bool is_subdivided() const { return parts.size() > 1; }
 };
 
 /// The cost of what is left out: remainder * ||f - P|| + mean * |error of the integral of f|.
@@ -66,11 +68,6 @@ class DatumMoments
                                                 const DatumWeights& weights, double allowed,
                                                 int max_parts) const;
 
-  /// The moments of a datum that the rule on the whole simplex integrates.
-  [[nodiscard]] std::vector<Point<n>> of_whole(const DatumOnSimplex<k, n>& found) const
-  {
-    return moments(found.parts);
-  }
   /// The values at the points of the rule of the polynomial with the given moments.
   void evaluate(std::span<const Point<n>> moments, std::span<Point<n>> values) const;
   /// The same at one point of the simplex; missing moments are 0.

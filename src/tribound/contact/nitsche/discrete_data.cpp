@@ -29,12 +29,10 @@ double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& m
                     const DatumOnSimplex<dim - 1, 3>& found)
 {
   double smallest = HUGE_VAL;
-  std::array<double, dim * dim> vertices;
   for (const DatumPart<dim - 1, 3>& part : found.parts)
   {
-    for (int i = 0; i < dim; ++i) std::ranges::copy(map(part.part[i]), vertices.begin() + i * dim);
     std::array<problem::Enclosure, 1> range;
-    gap.enclose(vertices, dim, range);
+    gap.enclose(corner_coordinates(map, part.part), dim, range);
     smallest = std::min(smallest, range[0].bounded() ? range[0].lower : -HUGE_VAL);
   }
   return smallest;
@@ -156,7 +154,7 @@ void DiscreteData<dim>::keep(Represented<n>& represented, std::size_t index, boo
                              DatumOnSimplex<k, n>&& found)
 {
   if (!represented.remainders.empty()) represented.remainders[index] = {found.oscillation, found.mean};
-  if (found.moments.empty()) return;
+  if (!found.is_subdivided()) return;
 #pragma omp critical(tribound_discrete_data)
   {
     effort_.subdivided += is_owned ? 1 : 0;
@@ -230,7 +228,7 @@ void DiscreteData<dim>::represent_contact(Segments segments, double density)
                  DatumOnSimplex<dim - 1, 3> found = contact_moments_(
                      datum, map, {std::sqrt(segment.h), 0}, density * std::sqrt(map.measure), max_parts_);
                  for (auto& moment : found.moments) moment[0] /= segment.gamma;
-                 if (segment.contact->gap && !found.moments.empty())
+                 if (segment.contact->gap && found.is_subdivided())
                    limit_gap<dim>(contact_moments_, smallest_gap<dim>(*segment.contact->gap, map, found),
                                   found.moments);
                  for (auto& part : found.parts) part.remainder[0] /= segment.gamma;

@@ -71,21 +71,21 @@ double StressRemainder::added_to(double norm) const
 template <int dim>
 InitialStress<dim>::InitialStress(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                   int degree, double density, int max_parts)
-    : problem_(&problem), mesh_(&mesh)
+    : mesh_(&mesh)
 {
   if (!problem.has_initial_stress()) return;
-  represent_constants();
-  represent(degree, density, max_parts);
+  represent_constants(problem);
+  represent(problem, degree, density, max_parts);
 }
 
 template <int dim>
-void InitialStress<dim>::represent_constants()
+void InitialStress<dim>::represent_constants(const problem::Problem<dim>& problem)
 {
   const double one = 1 / std::sqrt(dim == 2 ? 2.0 : 6.0);  // of the orthonormal basis
-  of_region_.resize(problem_->regions().size());
+  of_region_.resize(problem.regions().size());
   for (std::size_t r = 0; r < of_region_.size(); ++r)
   {
-    const Datum<dim, problem::n_symmetric<dim>> datum = initial_stress_datum(*problem_, static_cast<int>(r));
+    const Datum<dim, problem::n_symmetric<dim>> datum = initial_stress_datum(problem, static_cast<int>(r));
     acts_.push_back(datum.terms.empty() ? 0 : 1);
     const bool is_constant =
         std::ranges::all_of(datum.terms, [](const auto& term) { return term.value->is_constant(); });
@@ -94,7 +94,8 @@ void InitialStress<dim>::represent_constants()
 }
 
 template <int dim>
-void InitialStress<dim>::represent(int degree, double density, int max_parts)
+void InitialStress<dim>::represent(const problem::Problem<dim>& problem, int degree, double density,
+                                   int max_parts)
 {
   const auto varies = [this](Index cell) { return acts_on(cell) && of_region_[mesh_->region(cell)].empty(); };
   bool any = false;
@@ -109,16 +110,15 @@ void InitialStress<dim>::represent(int degree, double density, int max_parts)
                  const auto c = static_cast<Index>(i);
                  if (!varies(c)) return;
                  const SimplexMap<dim, dim> map = simplex_map(*mesh_, c);
-                 const auto found = moments(initial_stress_datum(*problem_, mesh_->region(c)), map, {1, 0},
+                 const auto found = moments(initial_stress_datum(problem, mesh_->region(c)), map, {1, 0},
                                             density * std::sqrt(map.measure), max_parts);
                  double missed = 0;
                  for (const auto& part : found.parts)
                    missed += 4 * part.remainder.squaredNorm() * map.measure * fem::fraction<dim>(part.part);
                  remainders_[i] = {found.oscillation, std::sqrt(missed)};
-                 const auto coefficients = found.moments.empty() ? moments.of_whole(found) : found.moments;
-                 of_cell_[i].reserve(coefficients.size());
-                 for (const auto& entries : coefficients) of_cell_[i].push_back(tensor_of<dim>(entries));
-                 if (found.parts.size() < 2 || c >= mesh_->n_owned_cells()) return;
+                 of_cell_[i].reserve(found.moments.size());
+                 for (const auto& entries : found.moments) of_cell_[i].push_back(tensor_of<dim>(entries));
+                 if (!found.is_subdivided() || c >= mesh_->n_owned_cells()) return;
 #pragma omp critical(tribound_initial_stress)
                  {
                    ++subdivided_;
@@ -163,9 +163,8 @@ double initial_traction_deviation(const problem::Problem<dim>& problem, const me
       [&](const SegmentSide<dim>& side)
       {
         const SimplexMap<dim - 1, dim> map = simplex_map(mesh, side);
-        std::array<double, dim * dim> vertices;
-        for (int i = 0; i < dim; ++i)
-          std::ranges::copy(map(fem::reference_simplex<dim - 1>()[i]), vertices.begin() + i * dim);
+        const std::array<double, dim* dim> vertices =
+            corner_coordinates(map, fem::reference_simplex<dim - 1>());
         for (const auto& [value, direction] :
              initial_stress_datum(problem, mesh.region(side.facet.cell)).terms)
         {

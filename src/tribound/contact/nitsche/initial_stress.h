@@ -37,7 +37,7 @@ class InitialStress
 {
  public:
   /// Formulas that are not polynomials of degree p + 2 are subdivided until a cell T leaves out about
-  /// density |T|^{1/2}, into max_parts parts at most. Keeps references.
+  /// density |T|^{1/2}, into max_parts parts at most. Keeps a reference to the mesh.
   InitialStress(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree, double density,
                 int max_parts);
 
@@ -57,10 +57,9 @@ class InitialStress
   [[nodiscard]] std::int64_t parts() const { return parts_; }
 
  private:
-  void represent_constants();
-  void represent(int degree, double density, int max_parts);
+  void represent_constants(const problem::Problem<dim>& problem);
+  void represent(const problem::Problem<dim>& problem, int degree, double density, int max_parts);
 
-  const problem::Problem<dim>* problem_;
   const mesh::Mesh<dim>* mesh_;
   std::vector<char> acts_;                           ///< in the regions
   std::vector<std::vector<Tensor<dim>>> of_region_;  ///< where it is constant; no regions: it acts nowhere

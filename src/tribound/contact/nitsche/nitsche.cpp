@@ -258,8 +258,7 @@ Point<dim> NitscheForm<dim>::respond(std::size_t k, int q, const Point<dim>& aug
 template <int dim>
 bool NitscheForm<dim>::starts_open(std::size_t k, int q) const
 {
-  return has_bonds_ && !cone(segments_[k].contact->law).is_bilateral &&
-         contact_points(k)[q].state.damage >= 1;
+  return has_bonds_ && !segments_[k].contact->is_bilateral() && contact_points(k)[q].state.damage >= 1;
 }
 
 template <int dim>
@@ -419,18 +418,20 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
     sum.force += weight * t[i];
     sum.normal += weight * t[i].dot(n);
     sum.abs_tangential += weight * t_t.norm();
+    sum.abs_normal += weight * std::abs(t[i].dot(n));
     tangential += weight * t_t;
     if constexpr (dim == 2) sum.tangential += weight * (-n[1] * t[i][0] + n[0] * t[i][1]);
   }
-  std::array<double, 2 * dim + 3> sums{sum.normal, sum.tangential, sum.abs_tangential};
-  std::ranges::copy(sum.force, sums.begin() + 3);
-  std::ranges::copy(tangential, sums.begin() + 3 + dim);
+  std::array<double, 2 * dim + 4> sums{sum.normal, sum.tangential, sum.abs_tangential, sum.abs_normal};
+  std::ranges::copy(sum.force, sums.begin() + 4);
+  std::ranges::copy(tangential, sums.begin() + 4 + dim);
   form.space().mesh().ranks().sum(std::span(sums));
   sum.normal = sums[0];
   sum.tangential = sums[1];
   sum.abs_tangential = sums[2];
-  std::copy_n(sums.begin() + 3, dim, sum.force.data());
-  std::copy_n(sums.begin() + 3 + dim, dim, tangential.data());
+  sum.abs_normal = sums[3];
+  std::copy_n(sums.begin() + 4, dim, sum.force.data());
+  std::copy_n(sums.begin() + 4 + dim, dim, tangential.data());
   if constexpr (dim == 3) sum.tangential = tangential.norm();
   return sum;
 }

@@ -261,6 +261,7 @@ struct ContactResultants
   double normal = 0;                      ///< integral of t^n (negative in compression)
   double tangential = 0;      ///< 2D: integral of t.(n turned by +90 degrees); 3D: |integral of t^t|
   double abs_tangential = 0;  ///< integral of |t^t|
+  double abs_normal = 0;      ///< integral of |t^n|
 };
 
 /// Over the segments whose slave has boundary number `tag`; over all for tag < 0.

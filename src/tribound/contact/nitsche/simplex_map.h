@@ -3,7 +3,12 @@
 /// @file simplex_map.h
 /// The map from reference coordinates to the points of a cell, a facet or a part of a facet.
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
 #include "tribound/base/types.h"
+#include "tribound/fem/simplex_parts.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
@@ -19,6 +24,25 @@ struct SimplexMap
 
   [[nodiscard]] Point<dim> operator()(const Point<k>& s) const { return origin + jacobian * s; }
 };
+
+/// The coordinates of points one after the other, as enclosures take them.
+template <std::size_t n, int dim>
+[[nodiscard]] std::array<double, n * dim> flat_coordinates(const std::array<Point<dim>, n>& points)
+{
+  std::array<double, n * dim> result;
+  for (std::size_t i = 0; i < n; ++i) std::ranges::copy(points[i], result.begin() + i * dim);
+  return result;
+}
+
+/// Those of the corners of a part of a simplex.
+template <int k, int dim>
+[[nodiscard]] std::array<double, (k + 1) * dim> corner_coordinates(const SimplexMap<k, dim>& map,
+                                                                   const fem::Part<k>& part)
+{
+  std::array<Point<dim>, k + 1> corners;
+  std::ranges::transform(part, corners.begin(), map);
+  return flat_coordinates(corners);
+}
 
 /// The maps of a cell and of a boundary facet.
 template <int dim>

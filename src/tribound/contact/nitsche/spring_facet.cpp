@@ -37,9 +37,7 @@ template <int dim>
 void enclose(const problem::Field& field, const FacetVertices<dim>& vertices,
              std::span<problem::Enclosure> taylor)
 {
-  std::array<double, dim * dim> coordinates;
-  for (int i = 0; i < dim; ++i) std::ranges::copy(vertices[i], coordinates.begin() + i * dim);
-  field.enclose(coordinates, dim, taylor);
+  field.enclose(flat_coordinates(vertices), dim, taylor);
 }
 
 /// The values of the field on a simplex, which is halved where one enclosure of all of it is unbounded.

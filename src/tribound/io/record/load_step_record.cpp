@@ -113,7 +113,7 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
   for (std::size_t i = 0; i < effective.size(); ++i) effective[i] += step.level.traction[i];
   const contact::ContactResultants<dim> resultants = contact::contact_resultants<dim>(form, effective);
   constexpr double of_sums = 1e-12;  // rounding
-  const double resolution = of_sums * (std::abs(resultants.normal) + resultants.abs_tangential);
+  const double resolution = of_sums * (resultants.abs_normal + resultants.abs_tangential);
   record.effective_normal = known_digits(resultants.normal, resolution);
   record.tangential = known_digits(resultants.tangential, resolution);
   for (const adapt::Watch& watched : watch)

@@ -42,7 +42,7 @@ Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Poi
   Resultants result;
   result.resolution = (r.force - in_equilibrium.force).norm() + std::abs(r.normal - in_equilibrium.normal) +
                       std::abs(r.tangential - in_equilibrium.tangential) +
-                      round_off * (std::abs(r.normal) + r.abs_tangential);
+                      round_off * (r.abs_normal + r.abs_tangential);
   const auto known = [&](double value) { return known_digits(value, result.resolution); };
   result.force = known_components<dim>(r.force, result.resolution);
   result.normal = known(r.normal);
