@@ -315,7 +315,7 @@ INSTANTIATE_TEST_SUITE_P(
          {"deck.inp:18: element 2 is defined twice"}},
         {"CutOff",
          two_cubes.substr(0, two_cubes.size() - 4),
-         {"deck.inp:16: element 2 (C3D8R) has only 7 of 8 nodes"}},
+         {"deck.inp:16: element 2 (C3D8R) has only 7 of its 8 nodes"}},
         {"TooManyNodes",
          two_cubes + "*ELEMENT,TYPE=C3D4\n3,1,2,3,4,5\n",
          {"element 3 (C3D4) has more than 4 nodes"}},

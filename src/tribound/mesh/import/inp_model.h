@@ -124,6 +124,10 @@ struct InpModel
   std::vector<InpInstance> instances{{.name = {}, .part = 0, .place = {}}};
 };
 
+/// Finds family and type by the number of nodes in the name, "C3D20R": the letters behind it concern the
+/// integration. False if it is not read.
+[[nodiscard]] bool find_type(std::string_view name, InpElements& elements);
+
 /// Reads all keywords that say something about the mesh and passes over the others. Throws InputError with
 /// file and line.
 [[nodiscard]] InpModel parse_inp(InpLines& lines);

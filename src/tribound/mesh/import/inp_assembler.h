@@ -1,0 +1,145 @@
+#pragma once
+
+/// @file inp_assembler.h
+/// The instances of a deck put together.
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/mesh/import/cell_faces.h"
+#include "tribound/mesh/import/imported_mesh.h"
+#include "tribound/mesh/import/inp_lines.h"
+#include "tribound/mesh/import/inp_model.h"
+
+namespace tribound::mesh
+{
+
+/// The places of numbers of nodes or elements.
+class NumberIndex
+{
+ public:
+  NumberIndex() = default;
+  /// The numbers in the order of their places, which begin with `offset`.
+  NumberIndex(std::span<const std::int64_t> numbers, std::size_t offset)
+  {
+    entries_.reserve(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      entries_.push_back({numbers[i], static_cast<Index>(offset + i)});
+    if (!std::ranges::is_sorted(entries_)) std::ranges::sort(entries_);
+  }
+
+  using Entry = std::pair<std::int64_t, Index>;
+  [[nodiscard]] std::span<const Entry> entries() const { return entries_; }
+  /// Those from first to last.
+  [[nodiscard]] std::span<const Entry> range(std::int64_t first, std::int64_t last) const
+  {
+    const auto begin = lower_bound(first);
+    return last < first ? std::span<const Entry>{} : std::span<const Entry>(begin, lower_bound(last + 1));
+  }
+  /// -1 if there is none.
+  [[nodiscard]] Index find(std::int64_t number) const
+  {
+    // Mostly numbers have no gaps.
+    const auto guess = entries_.empty() ? -1 : number - entries_.front().first;
+    if (guess >= 0 && guess < std::ssize(entries_) && entries_[guess].first == number)
+      return entries_[guess].second;
+    const auto found = lower_bound(number);
+    return found == entries_.end() || found->first != number ? -1 : found->second;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Entry>::const_iterator lower_bound(std::int64_t number) const
+  {
+    return std::ranges::lower_bound(entries_, number, {}, &Entry::first);
+  }
+
+  std::vector<Entry> entries_{};
+};
+
+/// A set of an instance, with its members as places in all instances.
+struct ResolvedSet
+{
+  std::string name;  ///< "instance.set"
+  const InpSet* set;
+  std::vector<Index> members;
+  bool is_section = false;
+  bool is_of_surface = false;  ///< helps to define a surface
+};
+
+class InpAssembler
+{
+ public:
+  explicit InpAssembler(const std::filesystem::path& file) : lines_(file), model_(parse_inp(lines_))
+  {
+    mesh_.source = {.file = file.string()};
+  }
+
+  ImportedMesh assemble();
+
+ private:
+  /// What an element has become: a cell or a possible facet, by its number among those.
+  struct Element
+  {
+    Index number;
+    bool is_cell;
+    const InpElements* elements;
+    std::int64_t label;
+    InpPlace place;
+  };
+  struct Instance
+  {
+    NumberIndex nodes{};
+    NumberIndex elements{};
+    std::vector<ResolvedSet> node_sets{};
+    std::vector<ResolvedSet> element_sets{};
+  };
+
+  [[nodiscard]] const InpPart& part_of(std::size_t i) const { return model_.parts[model_.instances[i].part]; }
+  [[nodiscard]] std::string full_name(std::size_t i, const std::string& name) const
+  {
+    return i == 0 ? name : model_.instances[i].name + "." + name;
+  }
+  void check_instances() const;
+  void find_dimension();
+  void add_nodes(std::size_t i);
+  void add_elements(std::size_t i);
+  void add_block(std::size_t i, const InpElements& elements);
+  void order_centres(ElementBlock& block) const;
+  void resolve(std::size_t i, InpSets InpPart::*sets, std::vector<ResolvedSet> Instance::*resolved,
+               NumberIndex Instance::*index);
+  void add_members(const InpMembers& members, std::size_t i, const InpPlace& place,
+                   std::vector<Index>& places, std::vector<ResolvedSet> Instance::*resolved,
+                   NumberIndex Instance::*index);
+  void mark_sets(std::size_t i);
+  void add_surface(std::size_t i, const InpSurface& surface);
+  [[nodiscard]] FaceNodes face_of(const Element& element, int face, const InpPlace& place) const;
+  void check_facets() const;
+  void add_facets();
+  void add_regions();
+  [[nodiscard]] std::vector<const ResolvedSet*> sets_where(bool (*wanted)(const ResolvedSet&)) const;
+  /// Their elements that are cells, or that are none, by number; nothing where one is in two sets.
+  [[nodiscard]] std::vector<CellSet> disjoint(const std::vector<const ResolvedSet*>& sets,
+                                              bool of_cells) const;
+  /// The same; nothing unless every element is in a set.
+  [[nodiscard]] std::vector<CellSet> partition(const std::vector<const ResolvedSet*>& sets,
+                                               bool of_cells) const;
+  [[noreturn]] void throw_regions_unclear() const;
+
+  InpLines lines_;
+  InpModel model_;
+  ImportedMesh mesh_{};
+  int dim_ = 3;
+  std::vector<Instance> instances_{};
+  std::vector<Element> elements_{};     ///< of all instances
+  std::vector<ElementBlock> facets_{};  ///< one element each that is no cell
+  std::vector<Index> first_cell_{};     ///< of each block of cells
+  Index n_cells_ = 0;
+  std::size_t n_members_ = 0;  ///< of all sets so far
+};
+
+}  // namespace tribound::mesh

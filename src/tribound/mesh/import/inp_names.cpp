@@ -1,0 +1,254 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "tribound/mesh/import/inp_assembler.h"
+
+namespace tribound::mesh
+{
+
+void InpAssembler::add_members(const InpMembers& members, std::size_t i, const InpPlace& place,
+                               std::vector<Index>& places, std::vector<ResolvedSet> Instance::*resolved,
+                               NumberIndex Instance::*index)
+{
+  constexpr std::size_t most = 500'000'000;
+  const Instance& owner = instances_[members.instance < 0 ? i : members.instance];
+  if (members.set >= 0)
+  {
+    const std::vector<Index>& other = (owner.*resolved)[members.set].members;
+    places.insert(places.end(), other.begin(), other.end());
+    n_members_ += other.size();
+  }
+  else
+  {
+    const auto found = (owner.*index).range(members.first, members.last);
+    n_members_ += found.size();
+    if (!members.may_miss && std::ssize(found) != members.last - members.first + 1)
+    {
+      std::int64_t missing = members.first;
+      for (const auto& [number, _] : found) missing += number == missing ? 1 : 0;
+      lines_.fail(
+          place, fmt::format("{} {} is not defined", index == &Instance::nodes ? "node" : "element", missing),
+          "is the deck complete?");
+    }
+    for (const auto& [number, where] : found)
+      if ((number - members.first) % members.step == 0) places.push_back(where);
+  }
+  if (n_members_ > most)
+    lines_.fail(place, fmt::format("the sets of the deck have more than {} members", most),
+                "take out sets that are not needed");
+}
+
+void InpAssembler::resolve(std::size_t i, InpSets InpPart::*sets,
+                           std::vector<ResolvedSet> Instance::*resolved, NumberIndex Instance::*index)
+{
+  for (const InpSet& set : (part_of(i).*sets).all)
+  {
+    std::vector<Index> places;
+    for (const InpMembers& members : set.members) add_members(members, i, set.place, places, resolved, index);
+    if (!std::ranges::is_sorted(places)) std::ranges::sort(places);
+    places.erase(std::ranges::unique(places).begin(), places.end());
+    (instances_[i].*resolved).push_back({full_name(i, set.name), &set, std::move(places)});
+  }
+}
+
+void InpAssembler::mark_sets(std::size_t i)
+{
+  for (const InpSection& section : part_of(i).sections)
+  {
+    ResolvedSet& set = instances_[i].element_sets[section.set];
+    if (section.keyword == "SOLID SECTION")
+      set.is_section = true;
+    else if (!set.members.empty())
+      lines_.fail(section.place,
+                  fmt::format("element {} is in a *{}", elements_[set.members[0]].label, section.keyword),
+                  "shells, membranes and beams have no counterpart: model them by solids, or leave them out");
+  }
+  for (const InpSurface& surface : part_of(i).surfaces)
+    for (const InpSurfacePart& part : surface.parts)
+      if (!surface.is_of_nodes && part.elements.set >= 0)
+        instances_[part.elements.instance < 0 ? i : part.elements.instance]
+            .element_sets[part.elements.set]
+            .is_of_surface = true;
+}
+
+FaceNodes InpAssembler::face_of(const Element& element, int face, const InpPlace& place) const
+{
+  if (!element.is_cell)
+    lines_.fail(
+        place,
+        fmt::format("element {} ({}) is not a cell of the mesh", element.label, element.elements->type_name),
+        "surfaces are faces of solids, or edges of plane elements");
+  const ShapeTable& table = table_of(element.elements->type.shape);
+  if (face >= table.n_faces)
+    lines_.fail(
+        place,
+        fmt::format("element {} ({}) has no face S{}", element.label, element.elements->type_name, face + 1),
+        fmt::format("S1 to S{}", table.n_faces));
+  const auto block =
+      static_cast<int>(std::ranges::upper_bound(first_cell_, element.number) - first_cell_.begin()) - 1;
+  return nodes_of(mesh_.cells, {{}, block, element.number - first_cell_[block], face});
+}
+
+void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
+{
+  const std::string name = full_name(i, surface.name);
+  FacetSet facets{name};
+  NodeSet nodes{name, {}, true};
+  std::vector<Index> places;
+  for (const InpSurfacePart& part : surface.parts)
+  {
+    if (surface.is_of_nodes)
+    {
+      add_members(part.elements, i, part.place, nodes.nodes, &Instance::node_sets, &Instance::nodes);
+      continue;
+    }
+    places.clear();
+    add_members(part.elements, i, part.place, places, &Instance::element_sets, &Instance::elements);
+    for (const Index e : places)
+      append(facets.facets, face_of(elements_[e], part.face, part.place), elements_[e].label);
+  }
+  if (facets.facets.empty() && nodes.nodes.empty())
+    lines_.fail(surface.place, fmt::format("surface \"{}\" is empty", surface.name));
+  if (surface.is_of_nodes)
+  {
+    std::ranges::sort(nodes.nodes);
+    nodes.nodes.erase(std::ranges::unique(nodes.nodes).begin(), nodes.nodes.end());
+    mesh_.node_sets.push_back(std::move(nodes));
+  }
+  else
+    mesh_.facet_sets.push_back(std::move(facets));
+}
+
+/// Elements of lower dimension must be facets of cells: Gmsh, unical and Salome write surfaces so.
+void InpAssembler::check_facets() const
+{
+  if (facets_.empty()) return;
+  std::vector<char> is_marked(mesh_.nodes.size(), 0);
+  for (const ElementBlock& facet : facets_)
+    for (const Index node : facet.nodes) is_marked[node] = 1;
+  const CellFaces faces(mesh_.cells, is_marked);
+  for (const Element& element : elements_)
+  {
+    if (element.is_cell) continue;
+    const ElementBlock& facet = facets_[element.number];
+    if (faces.contains(key_of(facet.element(0).first(table_of(facet.type.shape).n_corners)))) continue;
+    lines_.fail(element.place,
+                fmt::format("element {} ({}) is a {}: it is not {} of a cell", element.label,
+                            element.elements->type_name, dim_ == 3 ? "shell" : "truss",
+                            dim_ == 3 ? "a face" : "an edge"),
+                "only solids, or plane elements alone, are read: model it by solids, or leave it out");
+  }
+}
+
+std::vector<const ResolvedSet*> InpAssembler::sets_where(bool (*wanted)(const ResolvedSet&)) const
+{
+  std::vector<const ResolvedSet*> result;
+  for (const Instance& instance : instances_)
+    for (const ResolvedSet& set : instance.element_sets)
+      if (wanted(set)) result.push_back(&set);
+  return result;
+}
+
+std::vector<CellSet> InpAssembler::disjoint(const std::vector<const ResolvedSet*>& sets, bool of_cells) const
+{
+  std::vector<char> is_taken(of_cells ? n_cells_ : facets_.size(), 0);
+  std::vector<CellSet> result;
+  for (const ResolvedSet* set : sets)
+  {
+    CellSet cells{set->name};
+    for (const Index e : set->members)
+    {
+      if (elements_[e].is_cell != of_cells) continue;
+      if (is_taken[elements_[e].number]++ != 0) return {};
+      cells.cells.push_back(elements_[e].number);
+    }
+    if (!cells.cells.empty()) result.push_back(std::move(cells));
+  }
+  return result;
+}
+
+std::vector<CellSet> InpAssembler::partition(const std::vector<const ResolvedSet*>& sets, bool of_cells) const
+{
+  std::vector<CellSet> result = disjoint(sets, of_cells);
+  std::size_t n = 0;
+  for (const CellSet& set : result) n += set.cells.size();
+  return n == (of_cells ? n_cells_ : facets_.size()) ? result : std::vector<CellSet>{};
+}
+
+namespace
+{
+
+bool is_section(const ResolvedSet& set)
+{
+  return set.is_section;
+}
+
+bool is_given_set(const ResolvedSet& set)
+{
+  return set.set->is_from_set_keyword && !set.is_of_surface;
+}
+
+bool is_set_of_elements(const ResolvedSet& set)
+{
+  return !set.set->is_from_set_keyword;
+}
+
+}  // namespace
+
+void InpAssembler::add_facets()
+{
+  std::vector<CellSet> sets = partition(sets_where(is_given_set), false);
+  if (sets.empty()) sets = disjoint(sets_where(is_set_of_elements), false);
+  for (const CellSet& set : sets)
+  {
+    FacetSet facets{set.name};
+    for (const Index f : set.cells)
+    {
+      FaceNodes nodes{facets_[f].type, {}};
+      std::ranges::copy(facets_[f].nodes, nodes.nodes.begin());
+      append(facets.facets, nodes, facets_[f].numbers[0]);
+    }
+    mesh_.facet_sets.push_back(std::move(facets));
+  }
+}
+
+void InpAssembler::add_regions()
+{
+  for (const auto wanted : {is_section, is_given_set, is_set_of_elements})
+    if (mesh_.cell_sets = partition(sets_where(wanted), true); !mesh_.cell_sets.empty()) return;
+  bool has_sets = false;
+  for (const Instance& instance : instances_)
+    for (const ResolvedSet& set : instance.element_sets)
+    {
+      if (std::ssize(set.members) >= n_cells_)
+        if (mesh_.cell_sets = partition({&set}, true); !mesh_.cell_sets.empty()) return;
+      has_sets = has_sets || (!set.is_of_surface && std::ranges::any_of(set.members, [&](Index e)
+                                                                        { return elements_[e].is_cell; }));
+    }
+  if (has_sets) throw_regions_unclear();
+}
+
+void InpAssembler::throw_regions_unclear() const
+{
+  std::vector<const ResolvedSet*> set_of(elements_.size(), nullptr);
+  std::string problem;
+  for (const ResolvedSet* set : sets_where([](const ResolvedSet& s) { return !s.is_of_surface; }))
+    for (const Index e : set->members)
+    {
+      if (set_of[e] && problem.empty())
+        problem = fmt::format("element {} is in \"{}\" and in \"{}\"", elements_[e].label, set_of[e]->name,
+                              set->name);
+      set_of[e] = set;
+    }
+  const auto none = std::ranges::find(set_of, nullptr);
+  if (none != set_of.end() && problem.empty())
+    problem = fmt::format("element {} is in no set", elements_[none - set_of.begin()].label);
+  throw InputError(mesh_.source,
+                   fmt::format("the element sets do not say which region an element is in: {}", problem),
+                   "*SOLID SECTION, ELSET=... for sets that have every element once; or take out the others");
+}
+
+}  // namespace tribound::mesh
