@@ -149,32 +149,6 @@ TEST(Import, AnInvertedElementIsNamed)
        "is inverted", "less distorted"});
 }
 
-/// Every middle of a cell is in the middle of its edge, every centre in that of its face.
-std::string misplaced_nodes(const mesh::ImportedMesh& mesh)
-{
-  for (const mesh::ElementBlock& block : mesh.cells)
-    for (std::size_t e = 0; e < block.size(); ++e)
-    {
-      const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
-      const auto is_centre = [&](int place, std::span<const int> corners)
-      {
-        Point<3> sum = Point<3>::Zero();
-        for (const int c : corners) sum += mesh.nodes[block.element(e)[c]];
-        return (mesh.nodes[block.element(e)[place]] - sum / static_cast<double>(corners.size())).norm() <
-               1e-12;
-      };
-      for (int i = 0; mesh::has_middles(block.type) && i < table.n_edges; ++i)
-        if (!is_centre(table.n_corners + i, table.edges[i])) return fmt::format("edge {}", i);
-      for (int f = 0; f < table.n_faces; ++f)
-      {
-        const mesh::FaceElement face = mesh::face_element(block.type, f);
-        if (face.type.n_nodes == 9 && !is_centre(face.nodes[8], table.faces[f].span()))
-          return fmt::format("face {}", f);
-      }
-    }
-  return {};
-}
-
 /// Meshes written for Gmsh, which adds middles of its own, and read.
 class ImportFromGmsh : public testing::TestWithParam<mesh::ElementType>
 {
@@ -234,8 +208,10 @@ TEST_P(ImportFromGmsh, OfThisTypeIsRead)
     EXPECT_EQ(mesh::gmsh_type(types.at(0)), type);
     gmsh::finalize();
   }
-  EXPECT_EQ(run_apart([&] { return "misplaced: " + misplaced_nodes(mesh::load_gmsh(file.path)); }).result,
-            "misplaced: ");
+  EXPECT_EQ(
+      run_apart([&] { return "misplaced: " + testing_mesh::misplaced_nodes(mesh::load_gmsh(file.path)); })
+          .result,
+      "misplaced: ");
   std::visit([&](const auto& mesh) { expect_box(mesh, mesh::has_middles(type)); }, mesh::read_mesh(file));
 }
 

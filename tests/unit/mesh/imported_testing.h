@@ -2,11 +2,15 @@
 
 /// Meshes of all element types on a box, renumbered at random.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
 #include <numeric>
 #include <random>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "tribound/mesh/import/cell_faces.h"
@@ -164,5 +168,31 @@ class ImportedBox
   mesh::ImportedMesh mesh_{.source = {.file = "box.inp"}};
   std::map<std::array<int, 3>, Index> nodes_{};
 };
+
+/// Every middle of a cell is in the middle of its edge, every centre in that of its face.
+inline std::string misplaced_nodes(const mesh::ImportedMesh& mesh)
+{
+  for (const mesh::ElementBlock& block : mesh.cells)
+    for (std::size_t e = 0; e < block.size(); ++e)
+    {
+      const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
+      const auto is_centre = [&](int place, std::span<const int> corners)
+      {
+        Point<3> sum = Point<3>::Zero();
+        for (const int c : corners) sum += mesh.nodes[block.element(e)[c]];
+        return (mesh.nodes[block.element(e)[place]] - sum / static_cast<double>(corners.size())).norm() <
+               1e-6;
+      };
+      for (int i = 0; mesh::has_middles(block.type) && i < table.n_edges; ++i)
+        if (!is_centre(table.n_corners + i, table.edges[i])) return fmt::format("edge {}", i);
+      for (int f = 0; f < table.n_faces; ++f)
+      {
+        const mesh::FaceElement face = mesh::face_element(block.type, f);
+        if (face.type.n_nodes == 9 && !is_centre(face.nodes[8], table.faces[f].span()))
+          return fmt::format("face {}", f);
+      }
+    }
+  return {};
+}
 
 }  // namespace tribound::testing_mesh

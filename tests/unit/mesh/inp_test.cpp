@@ -77,7 +77,7 @@ TEST_P(ImportFromInp, OfThisTypeIsRead)
   mesh::ImportedMesh box = ImportedBox(type, {3, 2, 2}, random).take();
   std::string text = nodes_and_elements(box);
   for (const mesh::CellSet& set : box.cell_sets)
-    text += "*ELSET, ELSET=" + set.name + "\n" + set_lines(set.cells, 1, 100);
+    text += fmt::format("*ELSET, ELSET={}\n{}", set.name, set_lines(set.cells, 1, 100));
   text += "*SOLID SECTION, MATERIAL=m, ELSET=left\n1.,\n*Solid  Section, elset=RIGHT, material=m\n";
   text += "*NSET, NSET=top\n" + set_lines(box.node_sets[0].nodes, 10, 7) + "*SURFACE, NAME=bottom\n";
   const std::vector<char> all(box.nodes.size(), 1);
@@ -275,6 +275,34 @@ TEST(Inp, DecksOfGmshHaveItsGroups)
       EXPECT_NEAR(measure_of(mesh, name), measure_of(expected, name), 1e-9);
     const auto& shape = *mesh.labels().quadratic_facets;
     EXPECT_EQ(shape.tags.size(), expected.labels().quadratic_facets->tags.size());
+  }
+}
+
+/// The order of the nodes as Gmsh's writer has it, of prisms and hexahedra.
+TEST(Inp, MiddlesOfGmshsSolidsAreWhereTheyBelong)
+{
+  const Directory directory;
+  for (const std::string recombine : {"", "Recombine Surface{1};"})
+  {
+    const mesh::MeshFile geo = directory.write(
+        "part.geo",
+        "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};\n"
+        "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\n"
+        "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1}; Mesh.MeshSizeMax = 0.5; "
+        "Mesh.SecondOrderIncomplete = 1;\n" +
+            recombine +
+            "out[] = Extrude {0, 0, 1} { Surface{1}; Layers{2}; Recombine; };\n"
+            "Physical Volume(\"body\") = {1}; Physical Surface(\"base\") = {1}; Mesh.ElementOrder = 2;\n");
+    const auto deck = directory / "part.inp";
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::open(geo.path.string());
+    gmsh::model::mesh::generate(3);
+    gmsh::write(deck.string());
+    gmsh::finalize();
+    const mesh::ImportedMesh mesh = mesh::read_inp(deck);
+    EXPECT_EQ(mesh.cells.at(0).type.n_nodes, recombine.empty() ? 15 : 20);
+    EXPECT_EQ(testing_mesh::misplaced_nodes(mesh), "");
   }
 }
 

@@ -113,14 +113,15 @@ void InpLines::open(const std::filesystem::path& file)
 void InpLines::include(const std::string& name)
 {
   constexpr std::size_t most_files = 10000;
+  constexpr std::size_t deepest = 100;
   if (name.empty()) fail(place_, "*INCLUDE without a file", "*INCLUDE, INPUT=mesh.inp");
   const std::filesystem::path file = files_[open_.back().file].parent_path() / name;
   std::error_code error;
   for (const Source& source : open_)
     if (std::filesystem::equivalent(files_[source.file], file, error))
       fail(place_, fmt::format("the file \"{}\" includes itself", file.string()), "take out this line");
-  if (files_.size() >= most_files)
-    fail(place_, fmt::format("the deck includes more than {} files", most_files));
+  if (files_.size() >= most_files || open_.size() >= deepest)
+    fail(place_, fmt::format("the deck includes more than {} files, or {} in each other", most_files, deepest));
   open(file);
 }
 

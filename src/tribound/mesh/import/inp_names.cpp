@@ -13,7 +13,7 @@ void InpAssembler::add_members(const InpMembers& members, std::size_t i, const I
                                std::vector<Index>& places, std::vector<ResolvedSet> Instance::*resolved,
                                NumberIndex Instance::*index)
 {
-  constexpr std::size_t most = 500'000'000;
+  constexpr std::size_t most = 200'000'000;
   const Instance& owner = instances_[members.instance < 0 ? i : members.instance];
   if (members.set >= 0)
   {
