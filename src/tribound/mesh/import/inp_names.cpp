@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "tribound/base/sorted.h"
 #include "tribound/mesh/import/inp_assembler.h"
 
 namespace tribound::mesh
@@ -48,8 +49,7 @@ void InpAssembler::resolve(std::size_t i, InpSets InpPart::*sets,
   {
     std::vector<Index> places;
     for (const InpMembers& members : set.members) add_members(members, i, set.place, places, resolved, index);
-    if (!std::ranges::is_sorted(places)) std::ranges::sort(places);
-    places.erase(std::ranges::unique(places).begin(), places.end());
+    sort_and_unite(places);
     (instances_[i].*resolved).push_back({full_name(i, set.name), &set, std::move(places)});
   }
 }
@@ -114,8 +114,7 @@ void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
     lines_.fail(surface.place, fmt::format("surface \"{}\" is empty", surface.name));
   if (surface.is_of_nodes)
   {
-    std::ranges::sort(nodes.nodes);
-    nodes.nodes.erase(std::ranges::unique(nodes.nodes).begin(), nodes.nodes.end());
+    sort_and_unite(nodes.nodes);
     mesh_.node_sets.push_back(std::move(nodes));
   }
   else
