@@ -88,7 +88,7 @@ TYPED_TEST(FreeMotions, AreStoppedByTheirSupports)
                                                  "'"),
                                data, {.degree = 2});
   const certify::FreeMotions<dim> motions(c.problem, c.mesh);
-  const std::vector<Index> supports = motions.supports(c.space);
+  const std::vector<Index> supports = motions.supports(c.space, c.form.constraints().fixed);
   ASSERT_EQ(supports.size(), motions.size());
   const std::vector<Point<dim>> points = c.space.node_points();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(std::ssize(supports), std::ssize(supports));
