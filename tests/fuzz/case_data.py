@@ -19,6 +19,30 @@ class Material:
     E: float
     lam: float
     mu: float
+    beta: float  # pressure per degree where nothing can expand in the plane
+
+
+@dataclass
+class InitialStress:
+    """sigma_0 = entries - beta (temperature - reference) I."""
+
+    entries: dict  # (row, column) -> Formula
+    temperature: object  # Formula
+    reference: object  # Formula
+    beta: float
+
+    def formulas(self):
+        return [*self.entries.values(), self.temperature, self.reference]
+
+    def __call__(self, places):
+        d = places.shape[1]
+        heated = self.beta * (self.temperature(places) - self.reference(places))
+        result = -heated[:, None, None] * np.eye(d)
+        for (i, j), entry in self.entries.items():
+            result[:, i, j] += entry(places)
+            if i != j:
+                result[:, j, i] += entry(places)
+        return result
 
 
 @dataclass
@@ -61,25 +85,38 @@ class Case:
         common = self.table["material"]
         own = common[region] if isinstance(common.get(region), dict) else common
         plane = own.get("plane", common.get("plane", "strain"))
-        E, nu = float(own["E"]), float(own["nu"])
+        E, nu, alpha = (number(own.get(key, common.get(key, 0))) for key in ("E", "nu", "alpha"))
         lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
-        return Material(E, 2 * lam * mu / (lam + 2 * mu) if plane == "stress" else lam, mu)
+        if plane == "stress":
+            return Material(E, 2 * lam * mu / (lam + 2 * mu), mu, E * alpha / (1 - nu))
+        return Material(E, lam, mu, E * alpha / (1 - 2 * nu))
 
     def body_force(self, region):
+        return [formula(f) for f in self.load(region).get("body", [0] * self.dimension)]
+
+    def load(self, region):
         common = self.table.get("load", {})
-        own = common[region] if isinstance(common.get(region), dict) else common
-        return [formula(f) for f in own.get("body", [0] * self.dimension)]
+        return common[region] if isinstance(common.get(region), dict) else common
+
+    def initial_stress(self, region):
+        load = self.load(region)
+        axes = [(0, 0), (1, 1), (0, 1)] if self.dimension == 2 else [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]
+        entries = {at: formula(f) for at, f in zip(axes, load.get("initial_stress", []))}
+        beta = self.material(region).beta
+        return InitialStress(entries, formula(load.get("temperature", 0)), formula(load.get("reference_temperature", 0)), beta)
 
     def condition(self, name):
         own = self.table.get("boundary", {}).get(name, {})
         fixed = own.get("displacement", ["free"] * self.dimension)
         contact = own.get("contact")
+        if "slider" in own:
+            contact = {"friction": "slider", "gap": own["slider"]}
         if contact is not None:
             contact = {
                 "friction": contact.get("friction", "none"),
                 "gap": formula(contact.get("gap", 0)),
                 "threshold": formula(contact.get("threshold", 0)),
-                "coefficient": float(contact.get("coefficient", 0)),
+                "coefficient": number(contact.get("coefficient", 0)),
             }
         spring = own.get("spring")
         if spring is not None:
@@ -99,9 +136,28 @@ class Case:
         )
 
 
+def number(datum):
+    """A number, or a formula of numbers."""
+    return float(formula(datum)(np.zeros((1, 3)))[0])
+
+
+def substituted(value, parameters):
+    """The numbers of parameters in place of their names, in every formula."""
+    if isinstance(value, dict):
+        return {key: substituted(entry, parameters) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [substituted(entry, parameters) for entry in value]
+    if isinstance(value, str):
+        for name, own in parameters.items():
+            plain = own["value"] if isinstance(own, dict) else own
+            value = re.sub(rf"\b{name}\b", f"({plain!r})", value)
+    return value
+
+
 def read_case(file):
     file = Path(file)
     table = tomllib.loads(file.read_text())
+    table = substituted(table, table.get("parameters", {}))
     mesh = table["mesh"]
     if "box" in mesh:
         return Case(file, table, len(mesh["box"]["lower"]), *box(mesh["box"]))

@@ -11,6 +11,7 @@ from results import Unreadable, read_json
 REFUSALS = {
     "not held": r"nothing stops the body|contact cannot hold the body",
     "contradiction": r"prescribes",
+    "outside": r"outside the mesh|cuts no cell|no part where within",
 }
 # Failures without a claimed bound are counted by reason, not reported.
 FAILURES = {

@@ -11,7 +11,7 @@ import numpy as np
 from case_data import read_case
 from judge_contact import judge_contact
 from judge_moments import judge_moments
-from judge_solution import judge_cells, judge_displacement, judge_mesh, judge_residual
+from judge_solution import judge_cells, judge_displacement, judge_mesh, judge_probes, judge_residual
 from level import Inconsistent, Level
 from residual import Residual
 from results import Unreadable, read_results
@@ -159,6 +159,7 @@ def judge_levels(verdict, case, results, killed):
         judge_cells(verdict, level, entry, number)
         judge_displacement(verdict, residual, entry, number)
         judge_residual(verdict, case, residual, entry, number)
+        judge_probes(verdict, residual, entry)
         if number + 1 == len(bounds):
             if not killed or results.contact is not None:
                 judge_contact(verdict, residual, results)

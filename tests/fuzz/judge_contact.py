@@ -69,15 +69,26 @@ def judge_points(verdict, residual, name, rows):
 
 
 def representation_errors(residual, name):
-    """How much polynomials in place of gap and threshold may change the gap, the pressure and the limit."""
+    """How much polynomials in place of gap, threshold and initial stress may change the gap, the pressure and the limit."""
     contact = residual.conditions[name].contact
     gap_error = SHARE * distance_from_polynomials(residual, name, contact["gap"])
-    error = residual.penalties(name).max() * gap_error * (1 + contact["coefficient"])
+    error = residual.penalties(name).max() * gap_error + SHARE * stress_distance(residual, name)
+    error *= 1 + contact["coefficient"]
     return gap_error, error, error + SHARE * distance_from_polynomials(residual, name, contact["threshold"])
 
 
-def distance_from_polynomials(residual, name, formula):
-    """The largest distance of a formula from P^(p+1) on a facet; the program may replace it by such a polynomial."""
+def stress_distance(residual, name):
+    """The same of sigma_0 from P^p."""
+    distance = 0.0
+    for sigma_0 in residual.initial:
+        distance += sum(distance_from_polynomials(residual, name, f, 0) for f in sigma_0.entries.values())
+        heated = (sigma_0.temperature, sigma_0.reference)
+        distance += sigma_0.beta * sum(distance_from_polynomials(residual, name, f, 0) for f in heated)
+    return distance
+
+
+def distance_from_polynomials(residual, name, formula, more=1):
+    """The largest distance of a formula from P^(p+more) on a facet; the program may replace it by such a polynomial."""
     if formula.is_constant:
         return 0.0
     level, facets = residual.level, residual.boundary[name]
@@ -86,7 +97,7 @@ def distance_from_polynomials(residual, name, formula):
     owners = np.repeat(np.arange(len(facets)), len(points))
     places = level.places(facets.cells[owners], facets.in_cell(owners, np.tile(points, (len(facets), 1))))
     values = formula(places).reshape(len(facets), -1).T
-    table = bernstein(points, p + 1)
+    table = bernstein(points, p + more)
     return float(np.abs(values - table @ np.linalg.lstsq(table, values, rcond=None)[0]).max())
 
 

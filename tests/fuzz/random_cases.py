@@ -97,9 +97,12 @@ def random_case(seed, directory):
     }
     conditions = table["boundary"].values()
     loaded = any(str(entry.get("traction", [])).strip("[0, ]") or "pressure" in entry for entry in conditions)
-    if dice.chance(0.4 if loaded else 0.95):
-        size = mesh.scale_E * dice.power(-4, -2) / np.ptp([mesh.lower, mesh.upper], axis=0).max()
-        table["load"] = {"body": [random_formula(dice, size, mesh.lower, mesh.upper) for _ in mesh.lower]}
+    load = random_load(dice, mesh, table["material"], dice.chance(0.4 if loaded else 0.95))
+    if load:
+        table["load"] = load
+    table |= random_observations(dice, mesh)
+    if dice.chance(0.2):
+        name_numbers(dice, table)
     file = directory / "case.toml"
     file.write_text(toml(table))
     return file
@@ -115,6 +118,62 @@ def random_material(dice, mesh):
     if len(mesh.regions) == 1:
         return one(mesh.scale_E)
     return {name: one(mesh.scale_E * dice.power(-3, 0)) for name in mesh.regions}
+
+
+def random_load(dice, mesh, material, has_body):
+    """Body force, initial stress and temperature, one table for all regions."""
+    strain = dice.power(-4, -2)
+
+    def datum(size):
+        return random_formula(dice, size, mesh.lower, mesh.upper)
+
+    load = {}
+    if has_body:
+        size = mesh.scale_E * strain / np.ptp([mesh.lower, mesh.upper], axis=0).max()
+        load["body"] = [datum(size) for _ in mesh.lower]
+    materials = list(material.values()) if isinstance(next(iter(material.values())), dict) else [material]
+    if dice.chance(0.2):
+        n = 6 if len(mesh.lower) == 3 else 3
+        if n == 3 and not any("plane" in own for own in materials) and dice.chance(0.3):
+            n = 4
+        load["initial_stress"] = [datum(mesh.scale_E * strain) if dice.chance(0.6) else 0 for _ in range(n)]
+    if dice.chance(0.25):
+        for own in materials:
+            own["alpha"] = dice.one_of([1e-5, 1e-5, 0])
+        load["temperature"] = datum(strain * 1e5)
+        if dice.chance(0.5):
+            load["reference_temperature"] = datum(strain * 1e5)
+    return load
+
+
+def random_observations(dice, mesh):
+    """Probes and sections."""
+    place = lambda: [float(f"{dice.between(a, b):.6g}") for a, b in zip(mesh.lower, mesh.upper)]
+    tables = {}
+    if dice.chance(0.15):
+        tables["probe"] = {"crest": {"point": place()}}
+        if dice.chance(0.5):
+            tables["probe"]["line"] = {"from": place(), "to": place(), "points": dice.integer(2, 9)}
+    if dice.chance(0.15):
+        tables["section"] = {"base": {"point": place(), "normal": [round(dice.between(-1, 1), 3) for _ in mesh.lower]}}
+        if dice.chance(0.3):
+            tables["section"]["base"]["within"] = str(random_formula(dice, 1.0, mesh.lower, mesh.upper))
+    return tables
+
+
+def name_numbers(dice, table):
+    """Parameters in place of numbers."""
+    parameters = {}
+    if "E" in table["material"]:
+        parameters["stiffness"] = {"value": table["material"]["E"], "label": "Young's modulus"}
+        table["material"]["E"] = "stiffness"
+    loaded = [entry for entry in table["boundary"].values() if "traction" in entry]
+    if loaded:
+        parameters["factor"] = dice.power(-0.1, 0.1)
+    for entry in loaded:
+        entry["traction"] = [f"factor*({datum})" for datum in entry["traction"]]
+    if parameters:
+        table["parameters"] = parameters
 
 
 def random_boundaries(dice, mesh):
@@ -169,6 +228,9 @@ def random_boundaries(dice, mesh):
             keys["rest"] = [datum(shift) for _ in range(d)]
         return keys
 
+    def slider():
+        return {"slider": 0 if dice.chance(0.5) else datum(shift)}
+
     free = {"traction": [0] * d}
     names = list(mesh.boundaries)
     conditions = {}
@@ -181,7 +243,7 @@ def random_boundaries(dice, mesh):
         elif number == 1:
             conditions[name] = held(dice.chance(0.85))
         else:
-            kind = dice.one_of([loaded, loaded, loaded, lambda: free, lambda: free, contact, lambda: held(False)])
+            kind = dice.one_of([loaded, loaded, loaded, lambda: free, lambda: free, contact, slider, lambda: held(False)])
             conditions[name] = kind()
     return conditions
 
@@ -224,7 +286,7 @@ def toml(table, prefix=""):
     lines, sections = [], []
     for key, value in table.items():
         name = key if key.replace("_", "").isalnum() else json.dumps(key)
-        if isinstance(value, dict) and prefix in ("", "boundary.", "material."):
+        if isinstance(value, dict) and prefix in ("", "boundary.", "material.", "probe.", "section."):
             sections.append(f"\n[{prefix}{name}]\n" + toml(value, f"{prefix}{name}."))
         else:
             lines.append(f"{name} = {inline(value)}")

@@ -28,9 +28,26 @@ class Residual:
         self.boundary = level.boundary(case)
         materials = [case.material(name) for name in names]
         self.materials = np.array([[m.lam, m.mu] for m in materials])[level.regions]
+        self.initial = [case.initial_stress(name) for name in names]
+        self.has_initial_stress = any(s.entries or s.beta for s in self.initial)
         self.conditions = {name: case.condition(name) for name in self.boundary}
         self.contact = [name for name, c in self.conditions.items() if c.contact and len(self.boundary[name])]
         self.springs = [name for name, c in self.conditions.items() if c.spring and len(self.boundary[name])]
+
+    # stress
+
+    def initial_stress(self, cells, points):
+        """sigma_0 at barycentric points, one per cell number."""
+        places = self.level.places(cells, points)
+        result = np.zeros((len(cells), self.level.dimension, self.level.dimension))
+        for number, sigma_0 in enumerate(self.initial):
+            here = self.level.regions[cells] == number
+            result[here] = sigma_0(places[here])
+        return result
+
+    def stress(self, cells, points):
+        """C eps(u) + sigma_0."""
+        return self.level.stress(cells, points, self.materials) + self.initial_stress(cells, points)
 
     # data on parts of facets and cells
 
@@ -99,15 +116,31 @@ class Residual:
                 constant = np.array([f(np.zeros((1, level.dimension)))[0] for f in force])
                 result[cells] = (level.volumes[cells] / n_functions)[:, None, None] * constant
                 continue
-            owners, parts = spread(len(cells), bisected(level.dimension, self.fineness))
-            for f in force:
-                for kink in f.kinks:
-                    owners, parts = cut(owners, parts, lambda o, b: value(kink, level.places(cells[o], b)))
-            owners, points, weights = composite(owners, parts, CELL_DEGREE)
-            owners = cells[owners]
+            owners, points, weights = self.cell_rule(cells, force)
             places = level.places(owners, points)
-            densities = np.stack([f(places) for f in force], axis=1) * (weights * level.volumes[owners])[:, None]
+            densities = np.stack([f(places) for f in force], axis=1) * weights[:, None]
             np.add.at(result, owners, bernstein(points, q)[:, :, None] * densities[:, None, :])
+        return result
+
+    def cell_rule(self, cells, formulas):
+        """Cell, barycentric point and weight of each point of a rule on these cells."""
+        smooth = all(f.is_constant for f in formulas)
+        owners, parts = spread(len(cells), bisected(self.level.dimension, 0 if smooth else self.fineness))
+        for f in formulas:
+            for kink in f.kinks:
+                owners, parts = cut(owners, parts, lambda o, b: value(kink, self.level.places(cells[o], b)))
+        owners, points, weights = composite(owners, parts, CELL_DEGREE)
+        return cells[owners], points, weights * self.level.volumes[cells[owners]]
+
+    def initial_forces(self, q):
+        """(sigma_0, grad B)."""
+        level = self.level
+        result = np.zeros((len(level.cells), len(lattice(level.dimension + 1, q)), level.dimension))
+        for number, sigma_0 in enumerate(self.initial):
+            cells, points, weights = self.cell_rule(np.flatnonzero(level.regions == number), sigma_0.formulas())
+            by_lambda = np.einsum("pij,pvj->pvi", sigma_0(level.places(cells, points)), level.gradients[cells])
+            table = bernstein_gradients(points, q) * weights[:, None, None]
+            np.add.at(result, cells, np.einsum("pav,pvi->pai", table, by_lambda))
         return result
 
     def internal_forces(self, q):
@@ -119,17 +152,21 @@ class Residual:
         stress = stress.reshape(n, m, level.dimension, level.dimension)
         by_lambda = np.einsum("cqij,cvj->cqvi", stress, level.gradients) * level.volumes[:, None, None, None]
         table = bernstein_gradients(points, q) * weights[:, None, None]
-        return np.einsum("qav,cqvi->cai", table, by_lambda, optimize=True)
+        result = np.einsum("qav,cqvi->cai", table, by_lambda, optimize=True)
+        return result + self.initial_forces(q) if self.has_initial_stress else result
 
     # the contact law
 
     def contact_rule(self, name):
         """Parts cut where T(u) has kinks: P^n = 0 and |P^t| = S."""
         contact = self.conditions[name].contact
-        cuts = [lambda o, b: self.contact_state(name, o, b)["normal"]]
-        if contact["friction"] != "none":
+        cuts = []
+        if contact["friction"] != "slider":
+            cuts.append(lambda o, b: self.contact_state(name, o, b)["normal"])
+        if contact["friction"] not in ("none", "slider"):
             cuts.append(lambda o, b: self.contact_state(name, o, b)["excess"])
-        return self.facet_rule(self.boundary[name], [contact["gap"], contact["threshold"]], cuts)
+        of_stress = [f for sigma_0 in self.initial for f in sigma_0.formulas()]
+        return self.facet_rule(self.boundary[name], [contact["gap"], contact["threshold"], *of_stress], cuts)
 
     def penalties(self, name):
         """gamma of each facet: gamma_0 min(lambda + 2 mu, 34 mu) / h_F."""
@@ -145,13 +182,15 @@ class Residual:
         u = self.level.displacement(cells, points)
         gap = contact["gap"](places) - dot(u, n)
         gamma = self.penalties(name)[owners]
-        on_facet = np.einsum("pij,pj->pi", self.level.stress(cells, points, self.materials), n)
+        on_facet = np.einsum("pij,pj->pi", self.stress(cells, points), n)
         normal = dot(on_facet, n) + gamma * gap
         slip = u - dot(u, n)[:, None] * n
         tangential = on_facet - dot(on_facet, n)[:, None] * n - gamma[:, None] * slip
-        pressure = np.maximum(-normal, 0)
+        slides = contact["friction"] == "slider"
+        pressure = -normal if slides else np.maximum(-normal, 0)
         limit = {
             "none": np.zeros(len(n)),
+            "slider": np.zeros(len(n)),
             "tresca": contact["threshold"](places),
             "coulomb": contact["coefficient"] * pressure,
         }[contact["friction"]]
