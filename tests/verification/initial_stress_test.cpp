@@ -170,6 +170,25 @@ TEST(InitialStress, BearsAgainstWalls)
   }
 }
 
+/// A strip of temperature, whose ends lie inside cells, in a body at rest: the norm of the stress is at most
+/// that of the initial stress.
+TEST(InitialStress, NormDoesNotExceedThatOfTheStress)
+{
+  for (const int p : {1, 2, 3})
+  {
+    const ProblemData<2> data{
+        .boundaries = {clamped<2>("left")},
+        .regions = {heated<2>(lame(1.0, 0.3), 0.1, formula("abs(x - 0.8) < 0.17 ? 1 : 0"), 0.0)}};
+    const DiscreteProblem<2> c(renumbered(block<2>({4, 2}, {2, 1}), 3), data, {.degree = p});
+    const double beta = problem::thermal_modulus(c.problem.material(0));
+    const double exact = beta * std::sqrt(2 * 0.34);  // the strip has the height 1
+    const double norm =
+        contact::stress_norms<2>(c.problem, c.space, std::vector<double>(c.space.n_dofs(), 0.0)).sigma;
+    EXPECT_LE(norm, exact * (1 + 1e-9)) << p;
+    EXPECT_GE(norm, 0.8 * exact) << p;
+  }
+}
+
 /// Two blocks between walls with initial stresses s along y, on meshes that do not match: sigma_yy is their
 /// mean in both, and the means of both sides on the interface have to be taken of C eps(u) + sigma_0.
 template <int dim>
