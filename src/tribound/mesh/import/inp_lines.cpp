@@ -121,7 +121,8 @@ void InpLines::include(const std::string& name)
     if (std::filesystem::equivalent(files_[source.file], file, error))
       fail(place_, fmt::format("the file \"{}\" includes itself", file.string()), "take out this line");
   if (files_.size() >= most_files || open_.size() >= deepest)
-    fail(place_, fmt::format("the deck includes more than {} files, or {} in each other", most_files, deepest));
+    fail(place_,
+         fmt::format("the deck includes more than {} files, or {} in each other", most_files, deepest));
   open(file);
 }
 
