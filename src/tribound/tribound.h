@@ -52,6 +52,7 @@
 #include "tribound/contact/nitsche/form_history.h"
 #include "tribound/contact/nitsche/interface_check.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/contact/nitsche/segment_values.h"

@@ -183,7 +183,7 @@ template <int dim>
 ProblemData<dim> under_a_platen()
 {
   ProblemData<dim> data{.boundaries = {loaded<dim>("left", 0, 0), loaded<dim>("top", 0, 0),
-                                       obstacle<dim>("bottom", Tresca(0.1))}};
+                                       obstacle<dim>("bottom", Coulomb(0.3))}};
   data.boundaries[0].spring.emplace(problem::Spring<dim>{0.7, 0.4});
   problem::RigidPart<dim>& platen = data.boundaries[1].rigid.emplace();
   platen.force[1] = -0.1;
@@ -209,8 +209,9 @@ std::vector<std::array<double, 2>> intervals(const mesh::Mesh<dim>& mesh, const 
       {.name = "safety", .kind = QuantityKind::safety_factor, .boundary = "bottom"},
       {.name = "u", .kind = QuantityKind::mean_displacement, .boundary = "top"},
       {.name = "u of contact", .kind = QuantityKind::mean_displacement, .boundary = "bottom"}};
-  if (problem.has_springs())
-    quantities.push_back({.name = "spring", .kind = QuantityKind::spring_force, .boundary = "top"});
+  for (const problem::BoundaryCondition<dim>& boundary : problem.boundaries())
+    if (boundary.spring)
+      quantities.push_back({.name = "spring", .kind = QuantityKind::spring_force, .boundary = boundary.name});
   EXPECT_EQ(certify::obstacles_unfit(form), "");
   const certify::EnergyBound bound =
       certify::EnergyEstimator<dim>(form, {.method = algebra::LinearMethod::direct}, quantities)(u);

@@ -127,6 +127,30 @@ TEST(RigidPart, MeetsAPlaneOfSymmetry)
               testing::AllOf(testing::HasSubstr("meets \"left\""), testing::HasSubstr("prescribes x")));
 }
 
+/// A slider beside the part holds it at their common corner; a part that is fixed in all motions is clamped.
+TEST(RigidPart, MeetsASliderAndIsClampedWhereAllIsFixed)
+{
+  problem::RigidPart<2> platen;
+  platen.force[1] = -0.1;
+  const auto data_of = [&](const problem::RigidPart<2>& part)
+  {
+    return ProblemData<2>{.boundaries = {obstacle<2>("left", problem::Slider()), clamped<2>("bottom"),
+                                         loaded<2>("right", 0.1, 0.0), rigid<2>("top", part)},
+                          .material = lame(1, 0.3)};
+  };
+  const mesh::MeshData<2> mesh = block<2>({4, 2}, {2, 1});
+  EXPECT_THAT(message_of([&] { (void)DiscreteProblem<2>(mesh, data_of(platen), {.degree = 2}); }),
+              testing::HasSubstr("meets \"left\""));
+  platen.fixed = {true, true, true};
+  const DiscreteProblem<2> guided(mesh, data_of(platen), {.degree = 2, .newton = {.tolerance = 1e-13}});
+  ProblemData<2> held = data_of(platen);
+  held.boundaries.back() = clamped<2>("top");
+  const DiscreteProblem<2> c(mesh, held, {.degree = 2, .newton = {.tolerance = 1e-13}});
+  const std::vector<double> expected = c.solve().u;
+  const std::vector<double> found = guided.solve().u;
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-12);
+}
+
 TEST(RigidPart, PartsDoNotTouchAndDoNotJoinBodies)
 {
   const problem::RigidPart<2> part;

@@ -92,13 +92,15 @@ problem::RigidPart<dim> resolve(const RigidConfig& config)
                        "x, y and rz");
     part.fixed[dim == 2 && i == 5 ? 2 : i] = true;
   }
-  if (std::ranges::all_of(std::span(part.fixed).subspan(dim), std::identity())) return part;
-  if (config.point.empty())
+  if (!config.point.empty())
+  {
+    check_length<dim>(config.point.size(), inside(config.where, "point"));
+    part.point = Point<dim>(config.point.data());
+  }
+  else if (!std::ranges::all_of(std::span(part.fixed).subspan(dim), std::identity()))
     throw InputError(config.where,
                      "has no point, through which the force acts and about which the part turns",
                      "point = [...], or fixed with all rotations");
-  check_length<dim>(config.point.size(), inside(config.where, "point"));
-  part.point = Point<dim>(config.point.data());
   return part;
 }
 

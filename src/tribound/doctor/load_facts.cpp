@@ -59,7 +59,8 @@ struct BoundaryLoad
   double measure = 0;
 };
 
-/// The integral of g_N and the forces on rigid parts; sets the largest mean of their sizes over a boundary.
+/// The integral of g_N and the forces on rigid parts, whose moments count as forces over the size; sets the
+/// largest mean of their sizes over a boundary.
 template <int dim>
 Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
@@ -90,6 +91,8 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
     for (int a = 0; a < dim; ++a) force[a] = part->force[a](part->point);
     resultant += force;
     loads[tag].magnitude = force.norm();
+    for (const problem::Field& moment : part->moment)
+      loads[tag].magnitude += std::abs(moment(part->point)) / facts.size;
   }
   for (const BoundaryLoad& load : loads)
     if (load.measure > 0)

@@ -50,6 +50,9 @@ TEST(RigidMotion, RigidPartHoldsOnlyWhatItIsFixedIn)
   platen.rigid->fixed = {true, true, false};
   EXPECT_THAT(verdict<2>(block(), {platen}),
               AllOf(HasSubstr("rotation about (1, 1)"), Not(HasSubstr("translation"))));
+  platen.rigid->fixed = {true, false, false};
+  platen.rigid->point = {1, 5000};
+  EXPECT_EQ(verdict<2>(block(), {platen, fixed<2>("bottom", free, 0.0)}), "held");
   platen.rigid->fixed = {true, true, true};
   EXPECT_EQ(verdict<2>(block(), {platen}), "held");
 }

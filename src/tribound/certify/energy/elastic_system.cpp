@@ -114,6 +114,7 @@ template <int dim>
 void ElasticSystem<dim>::find_motions() const
 {
   constexpr double tight = 1e-13;  // of the forces that a motion of a part causes
+  contact::PartMotions motions;
   for (std::size_t j = 0; j < parts_.size(); ++j)
   {
     std::vector<double> motion = parts_.motion(j);
@@ -124,8 +125,9 @@ void ElasticSystem<dim>::find_motions() const
     release(others);
     for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
     const std::vector<double> work = parts_.along(internal_forces(motion));
-    motions_.add(std::move(motion), work);
+    motions.add(std::move(motion), work);
   }
+  motions_ = std::move(motions);
 }
 
 /// Moves the parts, and all else with them, so that the forces on them are those of b up to rounding.

@@ -11,6 +11,7 @@
 #include "tribound/base/error.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/describe.h"
+#include "tribound/mesh/geometry.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::contact
@@ -26,7 +27,7 @@ Eigen::MatrixXd fixed_motions(const problem::RigidPart<dim>& part, const RigidMo
     if (!part.fixed[i])
       continue;
     else if (i < dim)
-      rows.row(row++) = modes.at(part.point).row(i);
+      rows.row(row++) = modes.at(part.point).row(i).normalized();  // the point may be far away
     else
       rows(row++, i) = 1;
   return rows;
@@ -50,18 +51,56 @@ RigidParts<dim>::RigidParts(const problem::Problem<dim>& problem, const fem::Lag
 namespace
 {
 
-/// Calls visit(boundary, node) for the nodes on each facet where something is fixed.
+/// Whether the boundary slides on an obstacle, which holds it along N.
+template <int dim>
+bool slides(const problem::BoundaryCondition<dim>& boundary)
+{
+  return boundary.contact && problem::cone(boundary.contact->law).is_bilateral;
+}
+
+/// Calls visit(facet, node) for the nodes on each facet where something is fixed.
 template <int dim, class Visit>
 void for_each_fixed_node(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                          const Visit& visit)
 {
   for (const mesh::BoundaryFacet& facet : space.mesh().boundary())
   {
-    if (!problem.boundary(facet.tag).fixes_any()) continue;
+    const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    if (!boundary.fixes_any() && !slides(boundary)) continue;
     const std::span<const Index> nodes = space.cell_nodes(facet.cell);
     for (int i = 0; i < space.basis().n_nodes(); ++i)
-      if (space.basis().node(i)[facet.local] == 0) visit(facet.tag, nodes[i]);
+      if (space.basis().node(i)[facet.local] == 0) visit(facet, nodes[i]);
   }
+}
+
+/// A direction in which a boundary prescribes the displacement.
+template <int dim>
+struct Prescribed
+{
+  Point<dim> direction;
+  double value;
+  std::string name;
+};
+
+/// What the condition on a facet prescribes at x.
+template <int dim>
+std::vector<Prescribed<dim>> prescribed_at(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFacet& facet,
+                                           const problem::BoundaryCondition<dim>& boundary,
+                                           const Point<dim>& x)
+{
+  std::vector<Prescribed<dim>> result;
+  for (int a = 0; a < dim; ++a)
+    if (boundary.clamps(a))
+      result.push_back({Point<dim>::Unit(a), boundary.prescribed(a)(x), std::string(1, "xyz"[a])});
+  if (slides(boundary))
+  {
+    const Point<dim> n = boundary.contact->normal
+                             ? (*boundary.contact->normal)(x)
+                             : mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
+    result.push_back(
+        {n, boundary.contact->gap ? (*boundary.contact->gap)(x) : 0, "the part along its normal"});
+  }
+  return result;
 }
 
 }  // namespace
@@ -95,9 +134,9 @@ void RigidParts<dim>::find_nodes(const problem::Problem<dim>& problem)
   const fem::LagrangeSpace<dim>& space = *space_;
   std::vector<int> part_of(space.n_dofs(), 0);  // number + 1, for every degree of freedom
   for_each_fixed_node(problem, space,
-                      [&](int tag, Index node)
+                      [&](const mesh::BoundaryFacet& facet, Index node)
                       {
-                        const auto part = std::ranges::find(parts_, tag, &Part::tag);
+                        const auto part = std::ranges::find(parts_, facet.tag, &Part::tag);
                         if (part == parts_.end()) return;
                         for (int a = 0; a < dim; ++a)
                           part_of[dim * node + a] = static_cast<int>(part - parts_.begin()) + 1;
@@ -135,7 +174,7 @@ void RigidParts<dim>::find_motions(const problem::Problem<dim>& problem)
     const Eigen::Map<const Eigen::Matrix<double, 2, dim>> corner(&corners[k * dim * 2]);
     parts_[k].modes.centre = (corner.row(0) - corner.row(1)).transpose() / 2;
     parts_[k].modes.size = (corner.row(0) + corner.row(1)).norm() / 2;
-    if (!(parts_[k].modes.size > 0))
+    if (!(parts_[k].modes.size > 0 && std::isfinite(parts_[k].modes.size)))
       throw InputError(problem.boundary(parts_[k].tag).where, "is a rigid part without facets",
                        "a boundary of the mesh that has facets");
   }
@@ -151,8 +190,12 @@ void RigidParts<dim>::find_motions(const problem::Problem<dim>& problem)
     Part& part = parts_[k];
     const Eigen::MatrixXd rows = fixed_motions(*problem.boundary(part.tag).rigid, part.modes);
     const Eigen::MatrixXd left = null_space(rows.transpose() * rows, std::max(1.0, rows.squaredNorm()));
-    const SymmetricEigen eigen = symmetric_eigen(left.transpose() * gram(k) * left);
-    part.motions = left * eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    part.motions = left;
+    if (left.cols() > 0)
+    {
+      const SymmetricEigen eigen = symmetric_eigen(left.transpose() * gram(k) * left);
+      part.motions *= eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
+    }
     part.first = n_motions_;
     n_motions_ += part.motions.cols();
     find_load(*problem.boundary(part.tag).rigid, gram(k), part);
@@ -165,30 +208,29 @@ void RigidParts<dim>::check_neighbours(const problem::Problem<dim>& problem) con
   constexpr double rounding = 1e-9;
   std::vector<int> place(space_->n_nodes(), -1);
   for (std::size_t k = 0; k < nodes_.size(); ++k) place[nodes_[k].node] = static_cast<int>(k);
-  const auto check = [&](int tag, Index i)
+  const auto check = [&](const mesh::BoundaryFacet& facet, Index i)
   {
     if (place[i] < 0) return;
     const Node& node = nodes_[place[i]];
     const Part& part = parts_[node.part];
+    if (facet.tag == part.tag) return;
     const problem::BoundaryCondition<dim>& of_part = problem.boundary(part.tag);
-    const problem::BoundaryCondition<dim>& other = problem.boundary(tag);
-    if (tag == part.tag) return;
+    const problem::BoundaryCondition<dim>& other = problem.boundary(facet.tag);
     if (other.rigid)
       throw InputError(other.where,
                        fmt::format("is a rigid part that meets the rigid part \"{}\" at {}", of_part.name,
                                    mesh::describe(node.x)),
                        "one group for both, or a deformable part between them");
     const Eigen::MatrixXd motions = part.at(node.x);
-    const double size = part.motions.norm();
-    for (int a = 0; a < dim; ++a)
-      if (other.clamps(a) && (motions.row(a).norm() > rounding * size || other.prescribed(a)(node.x) != 0))
+    for (const auto& [direction, value, name] : prescribed_at<dim>(space_->mesh(), facet, other, node.x))
+      if ((direction.transpose() * motions).norm() > rounding * part.motions.norm() ||
+          std::abs(value) > rounding * part.modes.size)
         throw InputError(
             of_part.where,
             fmt::format("is a rigid part that meets \"{}\" at {}, where that prescribes {}", other.name,
-                        mesh::describe(node.x), "xyz"[a]),
-            dim == 2 ? "rigid.fixed, such as [\"x\", \"rz\"] at a plane of symmetry x = 0, with 0 prescribed"
-                     : "rigid.fixed, such as [\"x\", \"ry\", \"rz\"] at a plane of symmetry x = 0, with 0 "
-                       "prescribed");
+                        mesh::describe(node.x), name),
+            fmt::format("rigid.fixed, such as [\"x\", {}] at a plane of symmetry x = 0, with 0 prescribed",
+                        dim == 2 ? "\"rz\"" : "\"ry\", \"rz\""));
   };
   for_each_fixed_node(problem, *space_, check);
 }
