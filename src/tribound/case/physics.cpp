@@ -92,10 +92,11 @@ const Table& rigid_table()
 {
   static const Table table{
       .name = "boundary.NAME.rigid",
-      .keys = {{"force", data("one number or formula of t per dimension, such as [0, -100]")},
-               {"moment", datum() | array_of(datum(), 3, "in 3D one number or formula of t per axis")},
-               {"point", numbers()},
-               {"fixed", array_of(one_of({"x", "y", "z", "rx", "ry", "rz"}), 1, fixed_hint)}}};
+      .keys = {
+          {"force", data("one number or formula of t per dimension, such as [0, -100]")},
+          {"moment", datum() | array_of(datum(), 3, "in 2D one number without brackets, in 3D one per axis")},
+          {"point", numbers()},
+          {"fixed", array_of(one_of({"x", "y", "z", "rx", "ry", "rz"}), 1, fixed_hint)}}};
   return table;
 }
 
