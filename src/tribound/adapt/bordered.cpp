@@ -70,7 +70,7 @@ void Bordered<dim>::move(const State& now, const State& then, const PathMeasure<
     d.assign(r.size(), 0.0);
     const double tolerance =
         std::max(0.01 * options.tolerance * options.force, 1e-12 * equilibrium_->norm(r));
-    const algebra::LinearSolve linear = equilibrium_->solve(tangent, r, tolerance, d, {});
+    const algebra::LinearSolve linear = equilibrium_->solve(form, tangent, r, tolerance, d, {});
     step.linear_iterations += linear.iterations;
     step.factorised = step.factorised || linear.factorised;
     step.fell_back = step.fell_back || linear.fell_back;
@@ -102,7 +102,6 @@ std::string Bordered<dim>::operator()(const FormAt& form_at, const PathMeasure<d
   {
     const Clock::time_point begin = Clock::now();
     const State now(form_at(point.t), point, measure);
-    equilibrium_->follow(*now.form);
     const double tolerance = std::max(options.tolerance * options.force, equilibrium_->round_off(point.u));
     if (k > 0)
     {

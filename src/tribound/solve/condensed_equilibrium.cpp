@@ -117,10 +117,11 @@ class CondensedEquilibrium final : public Equilibrium<dim>
     return norm(solve::round_off(diagonal_, condensed_.near(x)));
   }
 
-  algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r, double tolerance,
-                             std::span<double> d, const algebra::ResidualTest& /*small_enough*/) override
+  algebra::LinearSolve solve(const contact::NitscheForm<dim>& form, const Linearised<dim>& contact,
+                             std::span<const double> r, double tolerance, std::span<double> d,
+                             const algebra::ResidualTest& /*small_enough*/) override
   {
-    contact_.values = contact.tangent(*form_);
+    contact_.values = contact.tangent(form);
     std::ranges::copy(condensed_.solve(contact_, r, tolerance), d.begin());
     return {.factorised = !std::exchange(used_, true)};
   }

@@ -56,10 +56,11 @@ class Equilibrium
   /// The round-off in K x, which a residual cannot resolve, estimated by the diagonal of the stiffness.
   [[nodiscard]] virtual double round_off(std::span<const double> x) const = 0;
 
-  /// Solves K d - (DT_lin[d], [phi_i])_C = r to |residual| <= tolerance up to round-off; an iteration may end
-  /// when its residual is `small_enough`. Throws SolveError when the matrix is singular.
-  virtual algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r,
-                                     double tolerance, std::span<double> d,
+  /// Solves K d - (DT_lin[d], [phi_i])_C = r with T of `form`, which may differ from the one it follows in
+  /// gamma_0 and data of contact, to |residual| <= tolerance up to round-off; an iteration may end when its
+  /// residual is `small_enough`. Throws SolveError when the matrix is singular.
+  virtual algebra::LinearSolve solve(const contact::NitscheForm<dim>& form, const Linearised<dim>& contact,
+                                     std::span<const double> r, double tolerance, std::span<double> d,
                                      const algebra::ResidualTest& small_enough) = 0;
   [[nodiscard]] virtual algebra::LinearMethod method() const = 0;
   /// ExternalForces::scale.

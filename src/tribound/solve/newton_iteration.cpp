@@ -178,7 +178,7 @@ algebra::LinearSolve NewtonIteration<dim>::solve_tangent(std::span<const double>
 {
   try
   {
-    return equilibrium_->solve(linearised_, rhs, target, delta, small_enough);
+    return equilibrium_->solve(form_, linearised_, rhs, target, delta, small_enough);
   }
   catch (const SolveError& error)
   {

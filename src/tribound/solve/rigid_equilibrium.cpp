@@ -61,20 +61,21 @@ class RigidEquilibrium final : public Equilibrium<dim>
   algebra::LinearMethod method() const override { return held_->method(); }
   double force_scale() const override { return forces_.scale; }
 
-  algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r, double tolerance,
-                             std::span<double> d, const algebra::ResidualTest& small_enough) override
+  algebra::LinearSolve solve(const contact::NitscheForm<dim>& form, const Linearised<dim>& contact,
+                             std::span<const double> r, double tolerance, std::span<double> d,
+                             const algebra::ResidualTest& small_enough) override
   {
     constexpr double tight = 1e-12;  // of the forces that a motion of a part causes
-    const contact::RigidParts<dim>& parts = form_->rigid_parts();
-    const Tangent tangent{*form_, contact, contact.traction(*form_, std::vector<double>(d.size(), 0.0))};
-    algebra::LinearSolve result = held_->solve(contact, without_parts(r), tolerance, d, small_enough);
+    const contact::RigidParts<dim>& parts = form.rigid_parts();
+    const Tangent tangent{form, contact, contact.traction(form, std::vector<double>(d.size(), 0.0))};
+    algebra::LinearSolve result = held_->solve(form, contact, without_parts(r), tolerance, d, small_enough);
     contact::PartMotions motions;
     for (std::size_t j = 0; j < parts.size(); ++j)
     {
       std::vector<double> motion = parts.motion(j);
       const std::vector<double> forces = without_parts(tangent(motion));
       std::vector<double> others(motion.size(), 0.0);
-      result.iterations += held_->solve(contact, forces, tight * norm(forces), others, {}).iterations;
+      result.iterations += held_->solve(form, contact, forces, tight * norm(forces), others, {}).iterations;
       for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
       const std::vector<double> work = parts.along(tangent(motion));
       motions.add(std::move(motion), work);

@@ -60,10 +60,11 @@ class SparseEquilibrium final : public Equilibrium<dim>
   double norm(std::span<const double> x) const override { return form_->space().norm(x); }
   double round_off(std::span<const double> x) const override { return norm(solve::round_off(diagonal_, x)); }
 
-  algebra::LinearSolve solve(const Linearised<dim>& contact, std::span<const double> r, double tolerance,
-                             std::span<double> d, const algebra::ResidualTest& small_enough) override
+  algebra::LinearSolve solve(const contact::NitscheForm<dim>& form, const Linearised<dim>& contact,
+                             std::span<const double> r, double tolerance, std::span<double> d,
+                             const algebra::ResidualTest& small_enough) override
   {
-    contact_.set_values(contact.tangent(*form_));
+    contact_.set_values(contact.tangent(form));
     tangent_.assign_sum(stiffness_, contact_);
     const algebra::LinearSolve result = linear_solver_.solve(tangent_, r, tolerance, d, small_enough);
     for (std::size_t i = 0; i < d.size(); ++i)  // multigrid moves fixed ones within its tolerance
