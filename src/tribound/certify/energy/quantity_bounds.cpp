@@ -128,7 +128,7 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
   switch (item.kind())
   {
     case QuantityKind::energy:
-      return contact::stress_norms<dim>(form_.problem(), form_.space(), u).energy;
+      return contact::stress_norms<dim>(form_.problem(), form_.space(), u, &form_.data()).energy;
     case QuantityKind::load_work:
       return contact::load_work<dim>(form_, u);
     case QuantityKind::mean_displacement:

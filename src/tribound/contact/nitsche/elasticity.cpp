@@ -138,19 +138,22 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
   return load;
 }
 
-/// With Pi^{p+1} sigma_0 for sigma_0, as the form sees it: where sigma_0 is no such polynomial, the norm of
-/// sigma(u) is not smaller, so that what is relative to it is not taken for more accurate than it is.
 template <int dim>
 StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         std::span<const double> u)
+                         std::span<const double> u, const DiscreteData<dim>* data)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
+  std::optional<DiscreteData<dim>> made;
+  const auto make_data = [&]
+  {
+    if (data == nullptr)
+      data = &made.emplace(problem, mesh, space.degree(), std::span<const ContactSegment<dim>>{});
+  };
   const bool is_stressed = problem.has_initial_stress();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(
       is_stressed ? fem::data_quadrature_degree(space.degree()) : 2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
-  std::optional<DiscreteData<dim>> data;
-  if (is_stressed) data.emplace(problem, mesh, space.degree(), std::span<const ContactSegment<dim>>{});
+  if (is_stressed) make_data();
   std::vector<double> theta(fem::polynomial_dimension(dim, space.degree() + 1) * rule.size());
   const std::size_t n_theta = theta.size() / rule.size();
   for (int q = 0; q < rule.size(); ++q)
@@ -165,7 +168,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, static_cast<Index>(c));
     const problem::Material& material = problem.material(mesh.region(static_cast<Index>(c)));
     std::span<const Tensor<dim>> projected;  // of sigma_0
-    if (data) projected = data->initial_stress().coefficients(static_cast<Index>(c));
+    if (is_stressed) projected = data->initial_stress().coefficients(static_cast<Index>(c));
     const std::span<const Index> nodes = space.cell_nodes(static_cast<Index>(c));
     const double stiffest = 2 * material.mu + dim * material.lambda;
     Eigen::Array3d sums = Eigen::Array3d::Zero();
@@ -190,8 +193,8 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   const double round_off = unit_round_offs * std::numeric_limits<double>::epsilon() * std::sqrt(sums[2]);
   const auto is_loaded = [&]
   {
-    const std::vector<double> load =
-        assemble_load<dim>(DiscreteData<dim>(problem, mesh, space.degree(), {}), space);
+    make_data();
+    const std::vector<double> load = assemble_load<dim>(*data, space);
     return mesh.ranks().any(std::ranges::any_of(load, [](double force) { return force != 0; }));
   };
   if (norms.sigma <= round_off && round_off <= negligible * stress_that_matters(problem, space, u) &&
@@ -260,9 +263,9 @@ template std::vector<double> apply_stiffness(const problem::Problem<2>&, const f
 template std::vector<double> apply_stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                              std::span<const double>);
 template StressNorms stress_norms(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                  std::span<const double>);
+                                  std::span<const double>, const DiscreteData<2>*);
 template StressNorms stress_norms(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                  std::span<const double>);
+                                  std::span<const double>, const DiscreteData<3>*);
 template std::vector<double> cell_energies(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                            std::span<const double>);
 template std::vector<double> cell_energies(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,

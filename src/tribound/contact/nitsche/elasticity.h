@@ -57,9 +57,13 @@ struct StressNorms
   double round_off = 0;
 };
 
+/// With Pi^{p+1} sigma_0 for sigma_0, as the form sees it: where sigma_0 is no such polynomial, the norm of
+/// sigma(u) is not smaller, so that what is relative to it is not taken for more accurate than it is. `data`:
+/// of the problem, for the degree of the space; null: they are made where they are needed.
 template <int dim>
 [[nodiscard]] StressNorms stress_norms(const problem::Problem<dim>& problem,
-                                       const fem::LagrangeSpace<dim>& space, std::span<const double> u);
+                                       const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                                       const DiscreteData<dim>* data = nullptr);
 
 /// (sigma(u), grad u)_T of every own cell, not halved.
 template <int dim>
