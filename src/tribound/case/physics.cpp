@@ -96,7 +96,8 @@ const Table& rigid_table()
           {"force", data("one number or formula of t per dimension, such as [0, -100]")},
           {"moment", datum() | array_of(datum(), 3, "in 2D one number without brackets, in 3D one per axis")},
           {"point", numbers()},
-          {"fixed", array_of(one_of({"x", "y", "z", "rx", "ry", "rz"}), 1, fixed_hint)}}};
+          {"fixed", array_of(one_of({problem::motion_names<3>.begin(), problem::motion_names<3>.end()}), 1,
+                             fixed_hint)}}};
   return table;
 }
 

@@ -73,7 +73,7 @@ void require_uniform(std::span<const problem::Field> loads)
 template <int dim>
 problem::RigidPart<dim> resolve(const RigidConfig& config)
 {
-  constexpr std::array<std::string_view, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
+  constexpr auto& names = problem::motion_names<dim>;
   problem::RigidPart<dim> part;
   const auto n_moments = part.moment.size();
   require_uniform(config.force);
@@ -86,11 +86,11 @@ problem::RigidPart<dim> resolve(const RigidConfig& config)
   std::ranges::copy(config.moment, part.moment.begin());
   for (const std::string& name : config.fixed)
   {
-    const auto i = std::ranges::find(names, name) - names.begin();
-    if (dim == 2 && i != 0 && i != 1 && i != 5)
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
       throw InputError(inside(config.where, "fixed"), fmt::format("\"{}\" is no motion in 2D", name),
                        "x, y and rz");
-    part.fixed[dim == 2 && i == 5 ? 2 : i] = true;
+    part.fixed[found - names.begin()] = true;
   }
   if (!config.point.empty())
   {

@@ -87,12 +87,9 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   {
     const auto& part = form.problem().boundary(static_cast<int>(tag)).rigid;
     if (!part) continue;
-    Point<dim> force;
-    for (int a = 0; a < dim; ++a) force[a] = part->force[a](part->point);
-    resultant += force;
-    loads[tag].magnitude = force.norm();
-    for (const problem::Field& moment : part->moment)
-      loads[tag].magnitude += std::abs(moment(part->point)) / facts.size;
+    resultant += part->total_force();
+    loads[tag].magnitude =
+        part->total_force().norm() + part->total_moment().template lpNorm<1>() / facts.size;
   }
   for (const BoundaryLoad& load : loads)
     if (load.measure > 0)

@@ -69,20 +69,14 @@ class RigidEquilibrium final : public Equilibrium<dim>
     const contact::RigidParts<dim>& parts = form.rigid_parts();
     const Tangent tangent{form, contact, contact.traction(form, std::vector<double>(d.size(), 0.0))};
     algebra::LinearSolve result = held_->solve(form, contact, without_parts(r), tolerance, d, small_enough);
-    contact::PartMotions motions;
-    for (std::size_t j = 0; j < parts.size(); ++j)
+    const auto held = [&](std::span<const double> all)
     {
-      std::vector<double> motion = parts.motion(j);
-      const std::vector<double> forces = without_parts(tangent(motion));
-      std::vector<double> others(motion.size(), 0.0);
+      const std::vector<double> forces = without_parts(all);
+      std::vector<double> others(d.size(), 0.0);
       result.iterations += held_->solve(form, contact, forces, tight * norm(forces), others, {}).iterations;
-      for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
-      const std::vector<double> work = parts.along(tangent(motion));
-      motions.add(std::move(motion), work);
-    }
-    std::vector<double> missing = tangent(d);
-    for (std::size_t i = 0; i < d.size(); ++i) missing[i] = r[i] - missing[i];
-    motions.move(parts.along(missing), d);
+      return others;
+    };
+    contact::move_parts(parts, contact::part_motions(parts, tangent, held), tangent, r, d);
     return result;
   }
 

@@ -203,11 +203,9 @@ std::vector<Resultant<dim>> sum_reactions(const contact::NitscheForm<dim>& form,
 template <int dim>
 Resultant<dim> force_on(const problem::RigidPart<dim>& part, const Point<dim>& about)
 {
-  Point<dim> force;
-  for (int a = 0; a < dim; ++a) force[a] = part.force[a](part.point);
   Resultant<dim> result;
-  result.add(part.point - about, force);
-  for (std::size_t a = 0; a < part.moment.size(); ++a) result.moment[a] += part.moment[a](part.point);
+  result.add(part.point - about, part.total_force());
+  result.moment += part.total_moment();
   return result;
 }
 

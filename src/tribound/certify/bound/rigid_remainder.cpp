@@ -36,8 +36,8 @@ struct PartForces
     Eigen::Map<Eigen::MatrixXd> products(sums.data() + n + 1, n, n);
     for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
     {
-      const auto part = std::ranges::find(parts.parts(), facet.tag, &contact::RigidParts<dim>::Part::tag);
-      if (part == parts.parts().end()) continue;
+      const auto* const part = parts.on(facet.tag);
+      if (part == nullptr) continue;
       const auto first = static_cast<Eigen::Index>(part->first);
       const Eigen::Index m = part->motions.cols();
       const Point<dim> normal = mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
@@ -101,8 +101,8 @@ double rigid_remainder(const contact::NitscheForm<dim>& form, const Stress<dim>&
   std::map<Index, std::array<double, 2>> cells;  // a cell may have several facets
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
-    const auto part = std::ranges::find(parts.parts(), facet.tag, &contact::RigidParts<dim>::Part::tag);
-    if (part == parts.parts().end()) continue;
+    const auto* const part = parts.on(facet.tag);
+    if (part == nullptr) continue;
     const auto of_part = y.segment(static_cast<Eigen::Index>(part->first), part->motions.cols());
     std::array<Point<dim>, dim> t;
     const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);

@@ -110,34 +110,22 @@ std::vector<double> ElasticSystem<dim>::solve(std::span<const double> b, std::sp
   return u;
 }
 
-template <int dim>
-void ElasticSystem<dim>::find_motions() const
-{
-  constexpr double tight = 1e-13;  // of the forces that a motion of a part causes
-  contact::PartMotions motions;
-  for (std::size_t j = 0; j < parts_.size(); ++j)
-  {
-    std::vector<double> motion = parts_.motion(j);
-    std::vector<double> r = internal_forces(motion);
-    release(r);
-    std::vector<double> others(r.size(), 0.0);
-    (void)factors_->linear.solve(factors_->matrix, r, tight * space_.norm(r), others);
-    release(others);
-    for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
-    const std::vector<double> work = parts_.along(internal_forces(motion));
-    motions.add(std::move(motion), work);
-  }
-  motions_ = std::move(motions);
-}
-
 /// Moves the parts, and all else with them, so that the forces on them are those of b up to rounding.
 template <int dim>
 void ElasticSystem<dim>::move_parts(std::span<const double> b, std::span<double> u) const
 {
-  if (motions_.empty()) find_motions();
-  std::vector<double> missing = internal_forces(u);
-  for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = b[i] - missing[i];
-  motions_.move(parts_.along(missing), u);
+  constexpr double tight = 1e-13;  // of the forces that a motion of a part causes
+  const auto held = [&](std::vector<double> r)
+  {
+    release(r);
+    std::vector<double> others(r.size(), 0.0);
+    (void)factors_->linear.solve(factors_->matrix, r, tight * space_.norm(r), others);
+    release(others);
+    return others;
+  };
+  const auto forces = [this](std::span<const double> w) { return internal_forces(w); };
+  if (motions_.empty()) motions_ = contact::part_motions(parts_, forces, held);
+  contact::move_parts(parts_, motions_, forces, b, u);
 }
 
 template class ElasticSystem<2>;

@@ -47,7 +47,6 @@ class ElasticSystem
   [[nodiscard]] std::vector<double> internal_forces(std::span<const double> u) const;
   /// Sets 0 at fixed degrees of freedom.
   void release(std::span<double> vector) const;
-  void find_motions() const;
   void move_parts(std::span<const double> b, std::span<double> u) const;
 
   const problem::Problem<dim>& problem_;

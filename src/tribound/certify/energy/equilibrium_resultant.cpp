@@ -143,13 +143,10 @@ class LoadSums
   void add(const problem::RigidPart<dim>& part)
   {
     const auto moved = of_part(motion_, part);
-    const auto add = [&](const problem::Field& load, double along)
-    {
-      work_ += load(part.point) * along;
-      absolute_ += std::abs(load(part.point) * along);
-    };
-    for (int a = 0; a < dim; ++a) add(part.force[a], moved[a]);
-    for (std::size_t a = 0; a < part.moment.size(); ++a) add(part.moment[a], moved[dim + a]);
+    auto load = moved;
+    load << part.total_force(), part.total_moment();
+    work_ += load.dot(moved);
+    absolute_ += load.cwiseAbs().dot(moved.cwiseAbs());
   }
 
   [[nodiscard]] KnownNumber total(const Ranks& ranks) const

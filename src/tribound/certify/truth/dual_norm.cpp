@@ -281,29 +281,17 @@ std::vector<double> DualNorm<dim>::product(std::span<const double> z) const
   return result;
 }
 
-template <int dim>
-void DualNorm<dim>::move_parts(std::span<const double> functional, std::vector<double>& z)
-{
-  contact::PartMotions motions;
-  for (std::size_t j = 0; j < parts_.size(); ++j)
-  {
-    std::vector<double> motion = parts_.motion(j);
-    const std::vector<double> others = riesz(product(motion));
-    for (std::size_t i = 0; i < motion.size(); ++i) motion[i] -= others[i];
-    const std::vector<double> work = parts_.along(product(motion));
-    motions.add(std::move(motion), work);
-  }
-  std::vector<double> missing = product(z);
-  for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = functional[i] - missing[i];
-  motions.move(parts_.along(missing), z);
-}
-
 /// With z from an inexact solver, <R, z> / ||z|| is still below the dual norm; ||z|| might not be.
 template <int dim>
 double DualNorm<dim>::of(std::span<const double> r)
 {
   std::vector<double> z = riesz(r);
-  if (parts_.size() > 0) move_parts(r, z);
+  if (parts_.size() > 0)
+  {
+    const auto forces = [this](std::span<const double> w) { return product(w); };
+    const auto held = [this](std::span<const double> f) { return riesz(f); };
+    contact::move_parts(parts_, contact::part_motions(parts_, forces, held), forces, r, z);
+  }
   const std::vector<double> az = product(z);
   double pairing = 0;       // <R, z>
   double norm_squared = 0;  // ||z||_{C,h}^2

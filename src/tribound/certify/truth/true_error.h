@@ -88,8 +88,6 @@ class DualNorm
   [[nodiscard]] std::vector<double> riesz(std::span<const double> functional);
   /// (z, phi_i) for every degree of freedom; without rigid parts only the free ones.
   [[nodiscard]] std::vector<double> product(std::span<const double> z) const;
-  /// Moves the rigid parts so that (z, w) = functional for their motions, too.
-  void move_parts(std::span<const double> functional, std::vector<double>& z);
 
   const contact::NitscheForm<dim>& form_;
   int n_refinements_;

@@ -55,10 +55,8 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
 template <int dim>
 void NitscheForm<dim>::prescribe(std::span<double> u) const
 {
-  const std::vector<double> motions = rigid_parts_.along(u);
-  for (std::size_t i = 0; i < u.size(); ++i)
-    if (constraints_.fixed[i]) u[i] = constraints_.values[i];
-  rigid_parts_.set(motions, u);
+  keep_free(u);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += constraints_.values[i];  // 0 elsewhere
 }
 
 template <int dim>

@@ -5,7 +5,10 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "tribound/contact/nitsche/rigid_parts.h"
 
 namespace tribound::contact
 {
@@ -25,5 +28,32 @@ class PartMotions
   std::vector<std::vector<double>> motions_;
   Eigen::MatrixXd work_;  ///< by columns
 };
+
+/// `forces(w)`: the forces of w at every degree of freedom; `held(f)`: the displacement, 0 on the parts, that
+/// the forces f on all else cause.
+template <int dim, class Forces, class Held>
+[[nodiscard]] PartMotions part_motions(const RigidParts<dim>& parts, const Forces& forces, const Held& held)
+{
+  PartMotions result;
+  for (std::size_t j = 0; j < parts.size(); ++j)
+  {
+    std::vector<double> motion = parts.motion(j);
+    const std::vector<double> others = held(forces(motion));
+    for (std::size_t i = 0; i < others.size(); ++i) motion[i] -= others[i];
+    const std::vector<double> work = parts.along(forces(motion));
+    result.add(std::move(motion), work);
+  }
+  return result;
+}
+
+/// Moves the parts in u so that its forces do the work of b in their motions.
+template <int dim, class Forces>
+void move_parts(const RigidParts<dim>& parts, const PartMotions& motions, const Forces& forces,
+                std::span<const double> b, std::span<double> u)
+{
+  std::vector<double> missing = forces(u);
+  for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = b[i] - missing[i];
+  motions.move(parts.along(missing), u);
+}
 
 }  // namespace tribound::contact

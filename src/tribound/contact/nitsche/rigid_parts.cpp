@@ -114,9 +114,9 @@ void RigidParts<dim>::check_bodies(const problem::Problem<dim>& problem) const
   std::vector<double> ends(2 * parts_.size(), -std::numeric_limits<double>::infinity());
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
-    const auto part = std::ranges::find(parts_, facet.tag, &Part::tag);
-    if (part == parts_.end()) continue;
-    double* const end = &ends[2 * (part - parts_.begin())];
+    const Part* const part = on(facet.tag);
+    if (part == nullptr) continue;
+    double* const end = &ends[2 * (part - parts_.data())];
     end[0] = std::max<double>(end[0], bodies.of_cell[facet.cell]);
     end[1] = std::max<double>(end[1], -bodies.of_cell[facet.cell]);
   }
@@ -136,10 +136,10 @@ void RigidParts<dim>::find_nodes(const problem::Problem<dim>& problem)
   for_each_fixed_node(problem, space,
                       [&](const mesh::BoundaryFacet& facet, Index node)
                       {
-                        const auto part = std::ranges::find(parts_, facet.tag, &Part::tag);
-                        if (part == parts_.end()) return;
+                        const Part* const part = on(facet.tag);
+                        if (part == nullptr) return;
                         for (int a = 0; a < dim; ++a)
-                          part_of[dim * node + a] = static_cast<int>(part - parts_.begin()) + 1;
+                          part_of[dim * node + a] = static_cast<int>(part - parts_.data()) + 1;
                       });
   space.update(std::span(part_of));
   const std::vector<Point<dim>> points = space.node_points();
@@ -239,11 +239,8 @@ void RigidParts<dim>::check_neighbours(const problem::Problem<dim>& problem) con
 template <int dim>
 void RigidParts<dim>::find_load(const problem::RigidPart<dim>& rigid, const Eigen::MatrixXd& gram, Part& part)
 {
-  Point<dim> force;
-  for (int a = 0; a < dim; ++a) force[a] = rigid.force[a](rigid.point);
-  Eigen::VectorXd work = part.modes.at(rigid.point).transpose() * force;
-  for (std::size_t a = 0; a < rigid.moment.size(); ++a)
-    work[static_cast<Eigen::Index>(dim + a)] += rigid.moment[a](rigid.point) / part.modes.size;
+  Eigen::VectorXd work = part.modes.at(rigid.point).transpose() * rigid.total_force();
+  work.tail(work.size() - dim) += rigid.total_moment() / part.modes.size;
   part.forces = solve_regular(gram, work);
   const Eigen::VectorXd in_motions = part.motions.transpose() * work;
   load_.insert(load_.end(), in_motions.begin(), in_motions.end());
@@ -258,6 +255,13 @@ void RigidParts<dim>::add_load(std::span<double> vector) const
     const Point<dim> force = part.modes.at(node.x) * part.forces;
     for (int a = 0; a < dim; ++a) vector[dim * node.node + a] += force[a];
   }
+}
+
+template <int dim>
+auto RigidParts<dim>::on(int tag) const -> const Part*
+{
+  const auto found = std::ranges::find(parts_, tag, &Part::tag);
+  return found == parts_.end() ? nullptr : &*found;
 }
 
 template <int dim>

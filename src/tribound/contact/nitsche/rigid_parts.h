@@ -78,7 +78,8 @@ class RigidParts
       return modes.at(x) * motions;
     }
   };
-  [[nodiscard]] std::span<const Part> parts() const { return parts_; }
+  /// The part that boundary number `tag` is, or null.
+  [[nodiscard]] const Part* on(int tag) const;
 
  private:
   /// A node of a part.

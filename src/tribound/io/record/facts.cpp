@@ -121,8 +121,6 @@ std::string describe(const problem::Material& material, int dimension, const pro
 template <int dim>
 std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Units& units)
 {
-  constexpr std::array<std::string_view, 6> in_space = {"x", "y", "z", "rx", "ry", "rz"};
-  constexpr std::array<std::string_view, 3> in_plane = {"x", "y", "rz"};
   const auto list = [](const auto& fields)
   {
     std::string words;
@@ -135,8 +133,7 @@ std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Unit
                          fmt::join(part.point, ", "));
   std::string fixed;
   for (std::size_t i = 0; i < part.fixed.size(); ++i)
-    if (part.fixed[i])
-      fixed += fmt::format("{}{}", fixed.empty() ? "" : ", ", dim == 2 ? in_plane[i] : in_space[i]);
+    if (part.fixed[i]) fixed += fmt::format("{}{}", fixed.empty() ? "" : ", ", problem::motion_names<dim>[i]);
   return fixed.empty() ? words : words + ", fixed in " + fixed;
 }
 
