@@ -18,6 +18,7 @@
 #include "support/discrete_problem.h"
 #include "support/random_cases.h"
 #include "support/random_everything.h"
+#include "support/seen_range.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -35,21 +36,6 @@ namespace tribound::test
 namespace
 {
 
-/// The smallest and the largest of the numbers seen.
-struct Seen
-{
-  double least = HUGE_VAL;
-  double most = 0;
-  int count = 0;
-
-  void add(double number)
-  {
-    least = std::min(least, number);
-    most = std::max(most, number);
-    ++count;
-  }
-};
-
 [[nodiscard]] adapt::Method method(int p)
 {
   return {.degree = p, .newton = {.tolerance = 1e-11}};
@@ -57,7 +43,7 @@ struct Seen
 
 /// At an early iterate and at the last.
 template <int dim>
-void expect_above_dual_norm(unsigned seed, int p, Seen& converged, Seen& others)
+void expect_above_dual_norm(unsigned seed, int p, SeenRange& converged, SeenRange& others)
 {
   const auto made = RandomEverything<dim>(seed, p, Roughness::any).make();
   const DiscreteProblem<dim> c(made.mesh, made.data, method(p));
@@ -81,7 +67,7 @@ void expect_above_dual_norm(unsigned seed, int p, Seen& converged, Seen& others)
   (void)c.solve(0, check);
 }
 
-void report(int dim, const Seen& converged, const Seen& others)
+void report(int dim, const SeenRange& converged, const SeenRange& others)
 {
   fmt::print("{}D: {} converged {:.3f} to {:.3f}, {} others {:.3f} to {:.3f}\n", dim, converged.count,
              converged.least, converged.most, others.count, others.least, others.most);
@@ -89,8 +75,8 @@ void report(int dim, const Seen& converged, const Seen& others)
 
 TEST(Everything, TheBoundIsAboveTheDualNorm)
 {
-  Seen converged;
-  Seen others;
+  SeenRange converged;
+  SeenRange others;
   for (unsigned seed = 0; seed < n_cases(9); ++seed)
     expect_above_dual_norm<2>(seed, 1 + static_cast<int>(seed % 3), converged, others);
   report(2, converged, others);
@@ -98,8 +84,8 @@ TEST(Everything, TheBoundIsAboveTheDualNorm)
 
 TEST(Everything, TheBoundIsAboveTheDualNorm3D)
 {
-  Seen converged;
-  Seen others;
+  SeenRange converged;
+  SeenRange others;
   for (unsigned seed = 0; seed < n_cases(3); ++seed)
     expect_above_dual_norm<3>(seed, 1 + static_cast<int>(seed % 2), converged, others);
   report(3, converged, others);
@@ -126,7 +112,7 @@ double value_at(const RicherReference<dim>& reference, const Quantity<dim>& quan
 /// What is known of energy bounds in random problems.
 struct EnergySeen
 {
-  Seen effectivity;
+  SeenRange effectivity;
   std::map<std::string, int> refused;
   int intervals = 0;
   std::map<std::string, int> missing;  ///< intervals

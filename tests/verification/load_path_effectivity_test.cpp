@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "support/bonded_path.h"
+#include "support/seen_range.h"
 #include "tribound/adapt/transfer.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
@@ -20,16 +21,9 @@ namespace tribound::test
 namespace
 {
 
-struct Seen
-{
-  double least = HUGE_VAL;
-  double most = 0;
-  int count = 0;
-};
-
 /// Repeats the step from the displacement before it, with the bound of each of its first iterates.
 template <int dim>
-void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const double> before, Seen& seen)
+void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const double> before, SeenRange& seen)
 {
   const contact::NitscheForm<dim>& form = step.at->discrete.form;
   const int degree = form.space().degree();
@@ -43,9 +37,7 @@ void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const do
     const double bound = estimator(u, stress).total_sharp;
     const double below = dual_norm(u);
     EXPECT_GE(bound, below);
-    seen.least = std::min(seen.least, bound / below);
-    seen.most = std::max(seen.most, bound / below);
-    ++seen.count;
+    seen.add(bound / below);
   };
   const solve::NewtonOptions options{.max_steps = 2, .damping = false};
   (void)solve::solve<dim>(form, before, options, {},
@@ -58,7 +50,8 @@ void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const do
 }
 
 template <int dim>
-void expect_guaranteed(const problem::ContactLaw& law, int degree, bool pairs, Seen& seen, bool water = false)
+void expect_guaranteed(const problem::ContactLaw& law, int degree, bool pairs, SeenRange& seen,
+                       bool water = false)
 {
   SCOPED_TRACE(
       fmt::format("{}D, {}, degree {}, {}", dim, problem::words(law), degree, pairs ? "pair" : "obstacle"));
@@ -84,7 +77,7 @@ TEST(LoadPathBound, IsAboveTheDualNormIn2D)
 {
   for (const int degree : {1, 2, 3})
   {
-    Seen seen;
+    SeenRange seen;
     for (const problem::ContactLaw& law : bonded_laws())
       for (const bool pairs : {false, true})
         if (degree < 3 || !pairs) expect_guaranteed<2>(law, degree, pairs, seen);
@@ -96,7 +89,7 @@ TEST(LoadPathBound, IsAboveTheDualNormIn3D)
 {
   for (const int degree : {1, 2})
   {
-    Seen seen;
+    SeenRange seen;
     const std::vector<problem::ContactLaw> laws = bonded_laws();
     for (std::size_t i = 0; i < laws.size(); ++i)
       if (degree == 1 ? i != 0 : i == 3) expect_guaranteed<3>(laws[i], degree, i % 2 == 1, seen);
@@ -107,7 +100,7 @@ TEST(LoadPathBound, IsAboveTheDualNormIn3D)
 /// On meshes to which the history was transferred in the middle of the path.
 TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
 {
-  Seen seen;
+  SeenRange seen;
   for (const problem::ContactLaw& law : bonded_laws())
     for (const bool pairs : {false, true})
     {
@@ -137,11 +130,11 @@ TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
 TEST(LoadPathBound, IsAboveTheDualNormWithWaterInTheJoint)
 {
   const std::vector<problem::ContactLaw> laws = bonded_laws();
-  Seen seen;
+  SeenRange seen;
   for (const problem::ContactLaw& law : laws)
     for (const bool pairs : {false, true}) expect_guaranteed<2>(law, pairs ? 1 : 2, pairs, seen, true);
   fmt::print("2D: {} iterates {:.3f} to {:.3f}\n", seen.count, seen.least, seen.most);
-  Seen in_3d;
+  SeenRange in_3d;
   expect_guaranteed<3>(laws[0], 1, false, in_3d, true);
   expect_guaranteed<3>(laws[3], 1, true, in_3d, true);
   fmt::print("3D: {} iterates {:.3f} to {:.3f}\n", in_3d.count, in_3d.least, in_3d.most);

@@ -11,6 +11,7 @@
 
 #include "support/discrete_problem.h"
 #include "support/random_pair.h"
+#include "support/seen_range.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -23,24 +24,10 @@ namespace
 {
 
 /// The observed quotients of bound and dual norm.
-struct Range
-{
-  double least = HUGE_VAL;
-  double most = 0;
-  int count = 0;
-
-  void add(double quotient)
-  {
-    least = std::min(least, quotient);
-    most = std::max(most, quotient);
-    ++count;
-  }
-};
-
 struct Seen
 {
-  Range converged;
-  Range others;
+  SeenRange converged;
+  SeenRange others;
 };
 
 /// At a random iterate of the first three, and at the last.

@@ -75,13 +75,25 @@ Point<dim> BoundaryCondition<dim>::load(const Point<dim>& x, const Point<dim>& n
   return g;
 }
 
+namespace
+{
+
 template <int dim>
-BoundaryCondition<dim> with_displacement(const std::string& name,
-                                         std::array<std::optional<Field>, dim> displacement)
+BoundaryCondition<dim> of_name(const std::string& name)
 {
   BoundaryCondition<dim> condition;
   condition.name = name;
   condition.where.key = name;
+  return condition;
+}
+
+}  // namespace
+
+template <int dim>
+BoundaryCondition<dim> with_displacement(const std::string& name,
+                                         std::array<std::optional<Field>, dim> displacement)
+{
+  BoundaryCondition<dim> condition = of_name<dim>(name);
   condition.displacement = std::move(displacement);
   return condition;
 }
@@ -89,9 +101,7 @@ BoundaryCondition<dim> with_displacement(const std::string& name,
 template <int dim>
 BoundaryCondition<dim> with_traction(const std::string& name, std::array<Field, dim> traction)
 {
-  BoundaryCondition<dim> condition;
-  condition.name = name;
-  condition.where.key = name;
+  BoundaryCondition<dim> condition = of_name<dim>(name);
   condition.traction = std::move(traction);
   return condition;
 }
@@ -99,9 +109,7 @@ BoundaryCondition<dim> with_traction(const std::string& name, std::array<Field, 
 template <int dim>
 BoundaryCondition<dim> with_contact(const std::string& name, ContactLaw law, Field gap)
 {
-  BoundaryCondition<dim> condition;
-  condition.name = name;
-  condition.where.key = name;
+  BoundaryCondition<dim> condition = of_name<dim>(name);
   condition.contact.emplace(std::move(law), std::move(gap));
   return condition;
 }

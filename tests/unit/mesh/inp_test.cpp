@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <gmsh.h>
 
+#include <filesystem>
 #include <random>
 
 #include "tribound/mesh/quadratic_facets.h"
@@ -29,6 +30,17 @@ std::string inp_type(const mesh::ElementType& type)
 {
   if (type == mesh::ElementType{mesh::Shape::prism, 18}) return "C3D15V";
   return fmt::format("{}{}", mesh::table_of(type.shape).dim == 2 ? "CPE" : "C3D", type.n_nodes);
+}
+
+/// Meshes a geometry and writes the mesh, as Gmsh does.
+void write_by_gmsh(const std::filesystem::path& geometry, const std::filesystem::path& to)
+{
+  gmsh::initialize(0, nullptr, false);
+  gmsh::option::setNumber("General.Terminal", 0);
+  gmsh::open(geometry.string());
+  gmsh::model::mesh::generate(3);
+  gmsh::write(to.string());
+  gmsh::finalize();
 }
 
 /// The cells of a mesh in lines of 8 numbers, nodes and elements numbered with gaps.
@@ -261,12 +273,7 @@ TEST(Inp, DecksOfGmshHaveItsGroups)
                                 "Physical Surface(\"lid\") = {{2}};\n",
                                 order));
     const auto deck = directory / "part.inp";
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::open(geo.path.string());
-    gmsh::model::mesh::generate(3);
-    gmsh::write(deck.string());
-    gmsh::finalize();
+    write_by_gmsh(geo.path, deck);
     const auto expected = std::get<mesh::Mesh<3>>(mesh::read_mesh(geo));
     const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(mesh::MeshFile{deck}));
     EXPECT_EQ(mesh.n_cells(), expected.n_cells());
@@ -294,12 +301,7 @@ TEST(Inp, MiddlesOfGmshsSolidsAreWhereTheyBelong)
             "out[] = Extrude {0, 0, 1} { Surface{1}; Layers{2}; Recombine; };\n"
             "Physical Volume(\"body\") = {1}; Physical Surface(\"base\") = {1}; Mesh.ElementOrder = 2;\n");
     const auto deck = directory / "part.inp";
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::open(geo.path.string());
-    gmsh::model::mesh::generate(3);
-    gmsh::write(deck.string());
-    gmsh::finalize();
+    write_by_gmsh(geo.path, deck);
     const mesh::ImportedMesh mesh = mesh::read_inp(deck);
     EXPECT_EQ(mesh.cells.at(0).type.n_nodes, recombine.empty() ? 15 : 20);
     EXPECT_EQ(testing_mesh::misplaced_nodes(mesh), "");
