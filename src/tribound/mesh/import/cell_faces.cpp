@@ -65,4 +65,25 @@ std::vector<CellFace> CellFaces::outer() const
   return result;
 }
 
+CellFaces faces_beside(std::span<const ElementBlock> cells, std::size_t n_nodes,
+                       std::span<const ElementBlock> facets)
+{
+  std::vector<char> is_marked(n_nodes, 0);
+  for (const ElementBlock& block : facets)
+    for (const Index node : block.nodes) is_marked[node] = 1;
+  return {cells, is_marked};
+}
+
+std::optional<FacetPlace> first_without_cell(std::span<const ElementBlock> cells, std::size_t n_nodes,
+                                             std::span<const ElementBlock> facets)
+{
+  if (facets.empty()) return {};
+  const CellFaces faces = faces_beside(cells, n_nodes, facets);
+  for (std::size_t b = 0; b < facets.size(); ++b)
+    for (std::size_t f = 0; f < facets[b].size(); ++f)
+      if (!faces.contains(key_of(facets[b].element(f).first(table_of(facets[b].type.shape).n_corners))))
+        return FacetPlace{b, f};
+  return {};
+}
+
 }  // namespace tribound::mesh

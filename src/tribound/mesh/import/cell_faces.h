@@ -4,6 +4,7 @@
 /// The faces of the cells of an imported mesh, found by their corners.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,5 +54,19 @@ class CellFaces
  private:
   std::vector<CellFace> faces_;  ///< ascending by key
 };
+
+/// Those whose corners are nodes of the facets.
+[[nodiscard]] CellFaces faces_beside(std::span<const ElementBlock> cells, std::size_t n_nodes,
+                                     std::span<const ElementBlock> facets);
+
+/// The first facet that is no face of a cell; nothing if all are.
+struct FacetPlace
+{
+  std::size_t block;
+  std::size_t element;
+};
+[[nodiscard]] std::optional<FacetPlace> first_without_cell(std::span<const ElementBlock> cells,
+                                                           std::size_t n_nodes,
+                                                           std::span<const ElementBlock> facets);
 
 }  // namespace tribound::mesh

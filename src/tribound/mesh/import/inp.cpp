@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <utility>
 
+#include "tribound/mesh/import/face_centres.h"
 #include "tribound/mesh/import/inp_assembler.h"
 
 namespace tribound::mesh
@@ -135,32 +135,8 @@ void InpAssembler::add_block(std::size_t i, const InpElements& elements)
     facets_.push_back({elements.type, {nodes.begin(), nodes.end()}, {elements.numbers[e]}});
   }
   if (!is_cell) return;
-  order_centres(block);
+  order_face_centres(block, mesh_.nodes);
   mesh_.cells.push_back(std::move(block));
-}
-
-/// Decks differ in the order of the nodes after those of the edges: the centre of a face is the one nearest
-/// to the middle of its corners.
-void InpAssembler::order_centres(ElementBlock& block) const
-{
-  const ShapeTable& table = table_of(block.type.shape);
-  const int first = table.n_corners + table.n_edges;
-  if (table.dim < 3 || block.type.n_nodes <= first + 1) return;
-  for (std::size_t e = 0; e < block.size(); ++e)
-  {
-    const auto nodes = std::span(block.nodes).subspan(e * block.type.n_nodes, block.type.n_nodes);
-    auto rest = nodes.subspan(first);
-    for (int f = 0; f < table.n_faces; ++f)
-    {
-      if (table.faces[f].n < 4) continue;
-      Point<3> middle = Point<3>::Zero();
-      for (const int c : table.faces[f].span()) middle += mesh_.nodes[nodes[c]] / 4;
-      const auto nearest = std::ranges::min_element(
-          rest, {}, [&](Index node) { return (mesh_.nodes[node] - middle).squaredNorm(); });
-      std::iter_swap(rest.begin(), nearest);
-      rest = rest.subspan(1);
-    }
-  }
 }
 
 ImportedMesh read_inp(const std::filesystem::path& file)

@@ -109,7 +109,6 @@ class InpAssembler
   void add_nodes(std::size_t i);
   void add_elements(std::size_t i);
   void add_block(std::size_t i, const InpElements& elements);
-  void order_centres(ElementBlock& block) const;
   void resolve(std::size_t i, InpSets InpPart::*sets, std::vector<ResolvedSet> Instance::*resolved,
                NumberIndex Instance::*index);
   void add_members(const InpMembers& members, std::size_t i, const InpPlace& place,
@@ -122,12 +121,9 @@ class InpAssembler
   void add_facets();
   void add_regions();
   [[nodiscard]] std::vector<const ResolvedSet*> sets_where(bool (*wanted)(const ResolvedSet&)) const;
-  /// Their elements that are cells, or that are none, by number; nothing where one is in two sets.
-  [[nodiscard]] std::vector<CellSet> disjoint(const std::vector<const ResolvedSet*>& sets,
-                                              bool of_cells) const;
-  /// The same; nothing unless every element is in a set.
-  [[nodiscard]] std::vector<CellSet> partition(const std::vector<const ResolvedSet*>& sets,
-                                               bool of_cells) const;
+  /// Their elements that are cells, or those that are none, by number.
+  [[nodiscard]] std::vector<CellSet> members_of(const std::vector<const ResolvedSet*>& sets,
+                                                bool cells) const;
   [[noreturn]] void throw_regions_unclear() const;
 
   InpLines lines_;

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <iterator>
-#include <system_error>
 
 namespace tribound::mesh
 {
@@ -21,19 +18,6 @@ std::string_view without_blanks(std::string_view text)
   const std::size_t begin = text.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-std::string content_of(const std::filesystem::path& file, const Where& where)
-{
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError(where, fmt::format("the file \"{}\" does not exist", file.string()),
-                     "names of included files are relative to the file that includes them");
-  std::ifstream stream(file, std::ios::binary);
-  std::string content(std::filesystem::file_size(file, error), '\0');
-  stream.read(content.data(), static_cast<std::streamsize>(content.size()));
-  if (!stream) throw InputError(where, fmt::format("the file \"{}\" cannot be read", file.string()));
-  return content;
 }
 
 /// Keyword lines may have blanks anywhere: "*SOLID  SECTION" is "SOLID SECTION", "EL SET" is "ELSET".
@@ -66,31 +50,6 @@ std::string_view trimmed(std::string_view text)
   return text;
 }
 
-std::optional<std::int64_t> integer_of(std::string_view field)
-{
-  if (field.starts_with('+')) field.remove_prefix(1);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size()) return {};
-  return value;
-}
-
-std::optional<double> number_of(std::string_view field)
-{
-  if (field.starts_with('+')) field.remove_prefix(1);
-  std::string with_e;
-  if (const std::size_t d = field.find_first_of("dD"); d != std::string_view::npos)
-  {
-    with_e = field;
-    with_e[d] = 'e';
-    field = with_e;
-  }
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size()) return {};
-  return value;
-}
-
 std::optional<std::string> InpKeyword::find(std::string_view parameter) const
 {
   const auto found = std::ranges::find(parameters, parameter, &std::pair<std::string, std::string>::first);
@@ -106,7 +65,9 @@ InpLines::InpLines(const std::filesystem::path& file)
 void InpLines::open(const std::filesystem::path& file)
 {
   const Where here = files_.empty() ? Where{.file = file.string()} : where(place_);
-  open_.push_back({static_cast<int>(files_.size()), content_of(file, here)});
+  open_.push_back(
+      {static_cast<int>(files_.size()),
+       content_of(file, here, "names of included files are relative to the file that includes them")});
   files_.push_back(file);
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tribound/base/error.h"
+#include "tribound/mesh/import/file_text.h"
 
 namespace tribound::mesh
 {
@@ -88,9 +89,5 @@ class InpLines
 [[nodiscard]] std::string capitals(std::string_view text);
 /// Without blanks and quotes around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// The whole field as a number; nothing if it is none.
-[[nodiscard]] std::optional<std::int64_t> integer_of(std::string_view field);
-/// Also with the exponents of Fortran, "1.5D-3".
-[[nodiscard]] std::optional<double> number_of(std::string_view field);
 
 }  // namespace tribound::mesh

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tribound/base/sorted.h"
+#include "tribound/mesh/import/cell_sets.h"
 #include "tribound/mesh/import/inp_assembler.h"
 
 namespace tribound::mesh
@@ -125,10 +126,7 @@ void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
 void InpAssembler::check_facets() const
 {
   if (facets_.empty()) return;
-  std::vector<char> is_marked(mesh_.nodes.size(), 0);
-  for (const ElementBlock& facet : facets_)
-    for (const Index node : facet.nodes) is_marked[node] = 1;
-  const CellFaces faces(mesh_.cells, is_marked);
+  const CellFaces faces = faces_beside(mesh_.cells, mesh_.nodes.size(), facets_);
   for (const Element& element : elements_)
   {
     if (element.is_cell) continue;
@@ -151,30 +149,18 @@ std::vector<const ResolvedSet*> InpAssembler::sets_where(bool (*wanted)(const Re
   return result;
 }
 
-std::vector<CellSet> InpAssembler::disjoint(const std::vector<const ResolvedSet*>& sets, bool of_cells) const
+std::vector<CellSet> InpAssembler::members_of(const std::vector<const ResolvedSet*>& sets, bool cells) const
 {
-  std::vector<char> is_taken(of_cells ? n_cells_ : facets_.size(), 0);
   std::vector<CellSet> result;
+  result.reserve(sets.size());
   for (const ResolvedSet* set : sets)
   {
-    CellSet cells{set->name};
+    CellSet members{set->name};
     for (const Index e : set->members)
-    {
-      if (elements_[e].is_cell != of_cells) continue;
-      if (is_taken[elements_[e].number]++ != 0) return {};
-      cells.cells.push_back(elements_[e].number);
-    }
-    if (!cells.cells.empty()) result.push_back(std::move(cells));
+      if (elements_[e].is_cell == cells) members.cells.push_back(elements_[e].number);
+    if (!members.cells.empty()) result.push_back(std::move(members));
   }
   return result;
-}
-
-std::vector<CellSet> InpAssembler::partition(const std::vector<const ResolvedSet*>& sets, bool of_cells) const
-{
-  std::vector<CellSet> result = disjoint(sets, of_cells);
-  std::size_t n = 0;
-  for (const CellSet& set : result) n += set.cells.size();
-  return n == (of_cells ? n_cells_ : facets_.size()) ? result : std::vector<CellSet>{};
 }
 
 namespace
@@ -199,8 +185,9 @@ bool is_set_of_elements(const ResolvedSet& set)
 
 void InpAssembler::add_facets()
 {
-  std::vector<CellSet> sets = partition(sets_where(is_given_set), false);
-  if (sets.empty()) sets = disjoint(sets_where(is_set_of_elements), false);
+  std::vector<CellSet> sets = partition_of(members_of(sets_where(is_given_set), false), facets_.size());
+  if (sets.empty()) sets = members_of(sets_where(is_set_of_elements), false);
+  if (!are_disjoint(sets, facets_.size())) return;
   for (const CellSet& set : sets)
   {
     FacetSet facets{set.name};
@@ -217,13 +204,17 @@ void InpAssembler::add_facets()
 void InpAssembler::add_regions()
 {
   for (const auto wanted : {is_section, is_given_set, is_set_of_elements})
-    if (mesh_.cell_sets = partition(sets_where(wanted), true); !mesh_.cell_sets.empty()) return;
+  {
+    mesh_.cell_sets = partition_of(members_of(sets_where(wanted), true), n_cells_);
+    if (!mesh_.cell_sets.empty()) return;
+  }
   bool has_sets = false;
   for (const Instance& instance : instances_)
     for (const ResolvedSet& set : instance.element_sets)
     {
       if (std::ssize(set.members) >= n_cells_)
-        if (mesh_.cell_sets = partition({&set}, true); !mesh_.cell_sets.empty()) return;
+        if (mesh_.cell_sets = partition_of(members_of({&set}, true), n_cells_); !mesh_.cell_sets.empty())
+          return;
       has_sets = has_sets || (!set.is_of_surface && std::ranges::any_of(set.members, [&](Index e)
                                                                         { return elements_[e].is_cell; }));
     }
@@ -232,19 +223,13 @@ void InpAssembler::add_regions()
 
 void InpAssembler::throw_regions_unclear() const
 {
-  std::vector<const ResolvedSet*> set_of(elements_.size(), nullptr);
-  std::string problem;
-  for (const ResolvedSet* set : sets_where([](const ResolvedSet& s) { return !s.is_of_surface; }))
-    for (const Index e : set->members)
-    {
-      if (set_of[e] && problem.empty())
-        problem = fmt::format("element {} is in \"{}\" and in \"{}\"", elements_[e].label, set_of[e]->name,
-                              set->name);
-      set_of[e] = set;
-    }
-  const auto none = std::ranges::find(set_of, nullptr);
-  if (none != set_of.end() && problem.empty())
-    problem = fmt::format("element {} is in no set", elements_[none - set_of.begin()].label);
+  const std::string problem = fault_of_partition(
+      members_of(sets_where([](const ResolvedSet& set) { return !set.is_of_surface; }), true), n_cells_,
+      [&](Index cell)
+      {
+        const auto is_it = [&](const Element& element) { return element.is_cell && element.number == cell; };
+        return std::ranges::find_if(elements_, is_it)->label;
+      });
   throw InputError(mesh_.source,
                    fmt::format("the element sets do not say which region an element is in: {}", problem),
                    "*SOLID SECTION, ELSET=... for sets that have every element once; or take out the others");

@@ -90,21 +90,8 @@ std::string InpParser::required(const InpKeyword& keyword, std::string_view para
 
 const std::string& InpParser::checked_name(const std::string& name, const InpPlace& place) const
 {
-  for (std::size_t i = 0; i < name.size(); ++i)
-  {
-    const auto byte = static_cast<unsigned char>(name[i]);
-    int n_more = byte < 0x80                   ? 0
-                 : byte >= 0xc2 && byte < 0xe0 ? 1
-                 : byte >= 0xe0 && byte < 0xf0 ? 2
-                 : byte >= 0xf0 && byte < 0xf5 ? 3
-                                               : -1;
-    const bool is_control = byte < 0x20 || byte == 0x7f;
-    for (; n_more > 0 && i + 1 < name.size() && (static_cast<unsigned char>(name[i + 1]) & 0xc0U) == 0x80U;
-         ++i)
-      --n_more;
-    if (n_more != 0 || is_control)
-      lines_.fail(place, "a name has bytes that are not UTF-8", "save the deck as UTF-8, or rename the set");
-  }
+  if (!is_utf8(name))
+    lines_.fail(place, "a name has bytes that are not UTF-8", "save the deck as UTF-8, or rename the set");
   return name;
 }
 
