@@ -12,6 +12,7 @@ pkg_search_module(MPI REQUIRED IMPORTED_TARGET mpi-c ompi-c mpich)
 pkg_search_module(PETSC REQUIRED IMPORTED_TARGET PETSc petsc)
 pkg_check_modules(LAPACK REQUIRED IMPORTED_TARGET lapack blas)
 pkg_check_modules(DEFLATE REQUIRED IMPORTED_TARGET libdeflate)
+pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi hdf5-mpi) # with MPI, as in PETSc
 pkg_check_modules(EIGEN REQUIRED IMPORTED_TARGET eigen3>=3.4)
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}) # FindGmsh.cmake

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "tribound/mesh/gmsh_session.h"
 #include "tribound/mesh/import/inp.h"
 #include "tribound/mesh/import/simplices.h"
+#include "tribound/mesh/import/vtk.h"
 #include "tribound/mesh/mesh_bytes.h"
 
 namespace tribound::mesh
@@ -206,6 +208,21 @@ AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& fi
 
 }  // namespace
 
+namespace
+{
+
+/// A file of a format that is not read by Gmsh.
+std::optional<ImportedMesh> read_own_format(const std::filesystem::path& file,
+                                            std::vector<std::string>& notes)
+{
+  const std::string suffix = file.extension().string();
+  if (suffix == ".inp") return read_inp(file);
+  if (suffix == ".vtu" || suffix == ".pvtu" || suffix == ".vtk") return read_vtk(file, {}, notes);
+  return {};
+}
+
+}  // namespace
+
 AnyMesh read_gmsh(const MeshFile& source, const FindSeams& find_seams, const std::atomic<bool>* stop,
                   double patience, std::vector<std::string>* notes)
 {
@@ -221,9 +238,12 @@ AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const s
   if (const auto* file = std::get_if<MeshFile>(&source))
   {
     check_mesh_file(file->path, file->where);
-    if (file->path.extension() != ".inp") return read_gmsh(*file, find_seams, stop, default_patience, notes);
-    SimplicialMesh mesh = make_simplicial(read_inp(file->path));
-    if (notes) *notes = std::move(mesh.notes);
+    std::vector<std::string> said;
+    std::optional<ImportedMesh> imported = read_own_format(file->path, said);
+    if (!imported) return read_gmsh(*file, find_seams, stop, default_patience, notes);
+    SimplicialMesh mesh = make_simplicial(std::move(*imported));
+    said.insert(said.end(), mesh.notes.begin(), mesh.notes.end());
+    if (notes) *notes = std::move(said);
     return verified(std::move(mesh.data), find_seams);
   }
   if (const auto* box = std::get_if<BoxMesh>(&source))

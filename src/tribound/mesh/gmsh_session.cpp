@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -158,11 +159,12 @@ void check_mesh_file(const std::filesystem::path& file, const Where& where)
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("does not exist", "the path is relative to the case file");
   const std::string suffix = file.extension().string();
-  if (suffix != ".msh" && suffix != ".geo" && suffix != ".inp")
-    fail("is neither a .msh nor a .geo nor an .inp",
-         "a .geo of one line reads other formats: Merge \"part.unv\"; keeps the groups, .vtk, .bdf and .mesh "
-         "lose "
-         "their names, .step and .iges are geometries to be meshed");
+  constexpr std::array<std::string_view, 6> suffixes = {".msh",  ".geo", ".inp", ".vtu",
+                                                        ".pvtu", ".vtk"};
+  if (std::ranges::count(suffixes, suffix) == 0)
+    fail(fmt::format("is none of {}", fmt::join(suffixes, ", ")),
+         "a .geo of one line reads other formats: Merge \"part.unv\"; keeps the groups, .bdf and .mesh "
+         "lose their names, .step and .iges are geometries to be meshed");
   if (std::filesystem::is_directory(file, error)) fail("is a directory", "name the mesh file in it");
   if (std::filesystem::is_empty(file, error)) fail("is empty", "save the mesh again");
   std::ifstream stream(file, std::ios::binary);

@@ -72,7 +72,7 @@ TEST_P(BadMesh, IsRefused)
 INSTANTIATE_TEST_SUITE_P(
     Gmsh, BadMesh,
     testing::ValuesIn(std::vector<BadFile>{
-        {"UnknownSuffix", "block.stl", "solid", {"case.toml:3: mesh.file: ", "neither a .msh nor a .geo"}},
+        {"UnknownSuffix", "block.stl", "solid", {"case.toml:3: mesh.file: ", "is none of .msh, .geo"}},
         {"Empty", "block.msh", "", {"case.toml:3", "is empty"}},
         {"NoMesh", "block.msh", "hello\n", {"case.toml:3", "is not a Gmsh mesh", "$MeshFormat"}},
         {"UnknownVersion",
