@@ -18,6 +18,7 @@
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
 #include "tribound/mesh/import/inp.h"
+#include "tribound/mesh/import/med.h"
 #include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/import/vtk.h"
 #include "tribound/mesh/mesh_bytes.h"
@@ -217,6 +218,7 @@ std::optional<ImportedMesh> read_own_format(const std::filesystem::path& file,
 {
   const std::string suffix = file.extension().string();
   if (suffix == ".inp") return read_inp(file);
+  if (suffix == ".med") return read_med(file);
   if (suffix == ".vtu" || suffix == ".pvtu" || suffix == ".vtk") return read_vtk(file, {}, notes);
   return {};
 }

@@ -159,8 +159,8 @@ void check_mesh_file(const std::filesystem::path& file, const Where& where)
   std::error_code error;
   if (!std::filesystem::exists(file, error)) fail("does not exist", "the path is relative to the case file");
   const std::string suffix = file.extension().string();
-  constexpr std::array<std::string_view, 6> suffixes = {".msh",  ".geo", ".inp", ".vtu",
-                                                        ".pvtu", ".vtk"};
+  constexpr std::array<std::string_view, 7> suffixes = {".msh",  ".geo", ".inp", ".vtu",
+                                                        ".pvtu", ".vtk", ".med"};
   if (std::ranges::count(suffixes, suffix) == 0)
     fail(fmt::format("is none of {}", fmt::join(suffixes, ", ")),
          "a .geo of one line reads other formats: Merge \"part.unv\"; keeps the groups, .bdf and .mesh "
