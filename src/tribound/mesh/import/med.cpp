@@ -16,6 +16,7 @@
 #include "tribound/mesh/import/face_centres.h"
 #include "tribound/mesh/import/file_text.h"
 #include "tribound/mesh/import/hdf5_group.h"
+#include "tribound/mesh/import/read_apart.h"
 
 namespace tribound::mesh
 {
@@ -314,7 +315,7 @@ void MedReader::add_node_sets()
 
 ImportedMesh read_med(const std::filesystem::path& file)
 {
-  return MedReader(file).read();
+  return read_apart(file, "HDF5", [&] { return MedReader(file).read(); });
 }
 
 }  // namespace tribound::mesh

@@ -16,6 +16,8 @@ namespace tribound::mesh
 /// others); else the first that has all; without groups a single region. Boundaries: the groups of
 /// elements of one dimension less, and the groups of nodes (node_sets.h).
 ///
+/// HDF5 does not survive damaged files: it works in a copy of this process.
+///
 /// Throws InputError with the file, and the number of the element: what is not read, missing or damaged,
 /// regions that are not clear, faces of no cell.
 [[nodiscard]] ImportedMesh read_med(const std::filesystem::path& file);

@@ -1,0 +1,139 @@
+#include "tribound/mesh/import/imported_bytes.h"
+
+#include <cstddef>
+#include <vector>
+
+#include "tribound/mesh/mesh_bytes.h"
+
+namespace tribound::mesh
+{
+
+namespace
+{
+
+/// The first number.
+enum ImportedAnswer : std::size_t
+{
+  is_refused = 0,
+  is_mesh = 1
+};
+
+void put(ByteWriter& bytes, const std::vector<ElementBlock>& blocks)
+{
+  bytes.put(blocks.size());
+  for (const ElementBlock& block : blocks)
+  {
+    bytes.put(static_cast<std::size_t>(block.type.shape));
+    bytes.put(static_cast<std::size_t>(block.type.n_nodes));
+    bytes.put(block.nodes);
+    bytes.put(block.numbers);
+  }
+}
+
+void get(ByteReader& bytes, std::vector<ElementBlock>& blocks)
+{
+  std::size_t n = 0;
+  bytes.get(n);
+  blocks.resize(n);
+  for (ElementBlock& block : blocks)
+  {
+    bytes.get(n);
+    block.type.shape = static_cast<Shape>(n);
+    bytes.get(n);
+    block.type.n_nodes = static_cast<int>(n);
+    bytes.get(block.nodes);
+    bytes.get(block.numbers);
+  }
+}
+
+/// Sets by their names, each with its members.
+template <class Set, class Put>
+void put_sets(ByteWriter& bytes, const std::vector<Set>& sets, const Put& put_members)
+{
+  bytes.put(sets.size());
+  for (const Set& set : sets)
+  {
+    bytes.put(std::string_view(set.name));
+    put_members(set);
+  }
+}
+
+template <class Set, class Get>
+void get_sets(ByteReader& bytes, std::vector<Set>& sets, const Get& get_members)
+{
+  std::size_t n = 0;
+  bytes.get(n);
+  sets.resize(n);
+  for (Set& set : sets)
+  {
+    bytes.get(set.name);
+    get_members(set);
+  }
+}
+
+}  // namespace
+
+std::string bytes_of(const ImportedMesh& mesh)
+{
+  ByteWriter bytes;
+  bytes.put(is_mesh);
+  bytes.put(mesh.nodes);
+  bytes.put(mesh.node_numbers);
+  put(bytes, mesh.cells);
+  put_sets(bytes, mesh.cell_sets, [&](const CellSet& set) { bytes.put(set.cells); });
+  put_sets(bytes, mesh.facet_sets, [&](const FacetSet& set) { put(bytes, set.facets); });
+  put_sets(bytes, mesh.node_sets,
+           [&](const NodeSet& set)
+           {
+             bytes.put(set.nodes);
+             bytes.put(static_cast<std::size_t>(set.has_facets ? 1 : 0));
+           });
+  return bytes.take();
+}
+
+std::string bytes_of(const InputError& error)
+{
+  ByteWriter bytes;
+  bytes.put(is_refused);
+  for (const int number : {error.where().line, error.where().column})
+    bytes.put(static_cast<std::size_t>(number));
+  for (const std::string& text : {error.where().file, error.where().key, error.problem(), error.hint()})
+    bytes.put(std::string_view(text));
+  return bytes.take();
+}
+
+ImportedMesh mesh_from(std::string_view result)
+{
+  ByteReader bytes(result);
+  std::size_t number = is_refused;
+  bytes.get(number);
+  if (number == is_refused)
+  {
+    Where where;
+    std::string problem;
+    std::string hint;
+    for (int* place : {&where.line, &where.column})
+    {
+      bytes.get(number);
+      *place = static_cast<int>(number);
+    }
+    for (std::string* text : {&where.file, &where.key, &problem, &hint}) bytes.get(*text);
+    throw InputError(where, problem, hint);
+  }
+  ImportedMesh mesh;
+  bytes.get(mesh.nodes);
+  bytes.get(mesh.node_numbers);
+  get(bytes, mesh.cells);
+  get_sets(bytes, mesh.cell_sets, [&](CellSet& set) { bytes.get(set.cells); });
+  get_sets(bytes, mesh.facet_sets, [&](FacetSet& set) { get(bytes, set.facets); });
+  get_sets(bytes, mesh.node_sets,
+           [&](NodeSet& set)
+           {
+             bytes.get(set.nodes);
+             bytes.get(number);
+             set.has_facets = number != 0;
+           });
+  return mesh;
+}
+
+}  // namespace tribound::mesh
