@@ -32,6 +32,7 @@ struct Arguments : SweepRequest
   std::string start = "block";  ///< of init: the case to start from
   std::string directory;        ///< of init
   std::string restart;          ///< of run: an output directory, or a checkpoint there
+  MeshRequest mesh;
 };
 
 void add_set_option(CLI::App& command, Arguments& arguments)
@@ -55,6 +56,7 @@ constexpr const char* program_commands = "Starting out";
 
 constexpr const char* help_footer = R"(Examples:
   tribound init block                         write block.toml, a commented case to start from
+  tribound mesh part.step part.msh --size 2   mesh a CAD geometry, or convert a mesh
   tribound check block.toml                   examine it: supports, units, mesh, expected cost
   tribound run block.toml                     solve it, write out/block
   tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
@@ -90,6 +92,26 @@ void describe_sweep(CLI::App& sweep, Arguments& arguments)
   add_set_option(sweep, arguments);
 }
 
+void describe_mesh(CLI::App& command, MeshRequest& request)
+{
+  mesh::ImportOptions& options = request.input.options;
+  command.add_option("input", request.input.path, "A mesh, a deck or a CAD geometry")->required();
+  command.add_option("output", request.output, "The mesh to write (.msh)")->required();
+  command.add_option("--size", options.size, "Largest edge, where a geometry is meshed")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--merge", options.merge, "Make one node of those of a body within this distance")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--ignore-elements", options.ignore_elements,
+                   "Leave out elements of a deck without a counterpart: shells, beams, springs, ...");
+  command.add_option("--region-array", options.region_array, "The array of cells that has the regions")
+      ->type_name("NAME");
+  command.add_option("--boundaries", options.boundaries, "The sets that become boundaries; default: all")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("A,B");
+  command.add_flag("-q,--quiet", request.quiet, "Print neither what is in the mesh nor notes");
+}
+
 /// Commands and options as shown by --help.
 void describe_command_line(CLI::App& app, Arguments& arguments)
 {
@@ -99,7 +121,9 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   CLI::App* init = app.add_subcommand("init", "Write a commented case to start from");
   CLI::App* info = app.add_subcommand("info", "Versions of the program and its libraries");
   CLI::App* schema = app.add_subcommand("schema", "Print the case format as a JSON Schema, for editors");
-  for (CLI::App* command : {init, info, schema}) command->group(program_commands);
+  CLI::App* mesh = app.add_subcommand("mesh", "Convert a mesh, or mesh a CAD geometry, and check it");
+  for (CLI::App* command : {init, mesh, info, schema}) command->group(program_commands);
+  describe_mesh(*mesh, arguments.mesh);
   CLI::App* check = app.add_subcommand("check", "Check a case without solving it and report what to correct");
   CLI::App* run = app.add_subcommand("run", "Solve a case and write its results");
   CLI::App* verify = app.add_subcommand(
@@ -161,6 +185,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "study") return study(arguments);
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
+  if (command == "mesh") write_mesh(arguments.mesh);
   if (command == "init") init(arguments.start, arguments.directory);
   if (command == "info") info(true);
   if (command == "schema") print(case_schema());

@@ -16,8 +16,8 @@
 #include "tribound/contact/pairing/pairing.h"
 #include "tribound/mesh/bisect.h"
 #include "tribound/mesh/box.h"
-#include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/import/inp.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/mesh.h"
 
@@ -127,7 +127,7 @@ void read_file(benchmark::State& state)
   const mesh::MeshFile source{write_large_file(static_cast<double>(state.range(0)) / 10, state.range(1) != 0),
                               {}};
   Index n_cells = 0;
-  for (auto _ : state) n_cells = std::get<mesh::Mesh<2>>(mesh::read_gmsh(source)).n_cells();
+  for (auto _ : state) n_cells = std::get<mesh::Mesh<2>>(mesh::read_mesh(source)).n_cells();
   state.counters["cells"] = n_cells;
   std::filesystem::remove(source.path);
 }
@@ -167,7 +167,11 @@ void read_deck(benchmark::State& state)
   const std::filesystem::path file = write_large_deck(static_cast<int>(state.range(0)));
   std::size_t n_cells = 0;
   for (auto _ : state)
-    n_cells = std::get<mesh::MeshData<3>>(mesh::make_simplicial(mesh::read_inp(file)).data).cells.size();
+  {
+    std::vector<std::string> notes;
+    mesh::ImportedMesh mesh = mesh::read_inp(file, false, notes);
+    n_cells = std::get<mesh::MeshData<3>>(mesh::make_simplicial(std::move(mesh)).data).cells.size();
+  }
   state.counters["cells"] = static_cast<double>(n_cells);
   std::filesystem::remove(file);
 }

@@ -19,7 +19,7 @@
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/solve/newton.h"
 
 namespace

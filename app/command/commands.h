@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/mesh/source.h"
+
 namespace tribound::app
 {
 
@@ -93,6 +95,18 @@ struct SweepRequest : CaseRequest
 /// output.directory. Throws InputError for invalid values before anything is solved. Success: all certified;
 /// budget_used_up: some not, or interrupted; failed: some failed; bad_input: some were rejected.
 [[nodiscard]] ExitCode sweep(const SweepRequest& request);
+
+/// `tribound mesh`: the mesh of a file, with the options of [mesh], for Gmsh and for other cases.
+struct MeshRequest
+{
+  mesh::MeshFile input{};
+  std::string output{};  ///< a .msh
+  bool quiet = false;
+};
+
+/// Reads and verifies the mesh, writes it with the elements it came with, and prints what is in it; notes go
+/// to stderr. Throws InputError and WriteError.
+void write_mesh(const MeshRequest& request);
 
 /// The cases available to `init`, in the order of app/templates.
 [[nodiscard]] std::vector<std::string> template_names();

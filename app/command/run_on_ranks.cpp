@@ -24,7 +24,7 @@
 #include "tribound/io/file/output_directory.h"
 #include "tribound/io/state/checkpoint.h"
 #include "tribound/mesh/box.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/share_out.h"
 
 namespace tribound::app

@@ -28,6 +28,7 @@
 #include "tribound/case/sweep_values.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/output_directory.h"
+#include "tribound/mesh/import/inp.h"
 
 extern char** environ;
 
@@ -95,8 +96,8 @@ std::vector<std::string> titles_of(const std::vector<std::string>& keys, const c
   return titles;
 }
 
-/// Hashes each mesh file once for all runs. Files read by the mesh file, such as the .step of a .geo, are not
-/// included.
+/// Hashes each mesh file once for all runs, a deck with the files that it includes. Files that a .geo reads
+/// are not included.
 class MeshHashes
 {
  public:
@@ -105,13 +106,20 @@ class MeshHashes
   {
     const auto* file = std::get_if<mesh::MeshFile>(&source);
     const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
-    if (is_new && file != nullptr)
-      if (const std::string content = io::read_text(file->path); !content.empty())
-        entry->second = sha256(content);
+    if (is_new && file != nullptr) entry->second = hash_of(file->path);
     return entry->second;
   }
 
  private:
+  static std::string hash_of(const std::filesystem::path& file)
+  {
+    const std::string content = io::read_text(file);
+    if (content.empty() || file.extension() != ".inp") return content.empty() ? "" : sha256(content);
+    std::string all;
+    for (const std::filesystem::path& part : mesh::files_of_inp(file)) all += sha256(io::read_text(part));
+    return sha256(all);
+  }
+
   std::map<std::filesystem::path, std::string> known_;
 };
 

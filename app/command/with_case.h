@@ -14,7 +14,7 @@
 
 #include "app/command/commands.h"
 #include "tribound/case/config.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound::app
 {

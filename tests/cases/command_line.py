@@ -129,6 +129,7 @@ def expected_completions(program):
         expected[f"tribound {command} --"] = [o for o in options(program, command) if o.startswith("--")]
     for command in ["check", "run", "sweep", "verify", "study"]:
         expected[f"tribound {command} ca"] = ["case.toml"]
+    expected["tribound mesh ca"] = ["case.toml", "cave.txt"]
     for command in ["check", "run", "verify", "study"]:
         expected[f"tribound {command} --quiet folder/"] = ["folder/inner.toml"]
     return expected

@@ -15,7 +15,7 @@
 #include "support/meshes.h"
 #include "support/meshes_by_place.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/share_out.h"
 
 namespace tribound::test
@@ -48,7 +48,7 @@ void expect_written_whole()
   const std::vector<std::string> left_out = {"top"};
   io::write_gmsh<dim>(file, part, left_out);
   if (!ranks.is_first()) return;
-  const auto again = std::get<mesh::Mesh<dim>>(mesh::read_gmsh({file, {}}));
+  const auto again = std::get<mesh::Mesh<dim>>(mesh::read_mesh(mesh::MeshFile{file, {}}));
   std::filesystem::remove(file);
   EXPECT_EQ(again.n_vertices(), whole.n_vertices());
   EXPECT_EQ(cells_by_place(again), cells_by_place(whole));

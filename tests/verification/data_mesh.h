@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound::test
 {

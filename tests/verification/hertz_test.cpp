@@ -21,7 +21,7 @@
 #include "tribound/adapt/loop.h"
 #include "tribound/case/resolve.h"
 #include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound::test
 {

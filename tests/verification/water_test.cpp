@@ -24,7 +24,7 @@
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/nitsche/crack_mouth.h"
 #include "tribound/io/record/hydraulic_figures.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound::test
 {

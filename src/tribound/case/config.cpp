@@ -44,14 +44,36 @@ const Options<mesh::BoxMesh>& box_options()
   return options;
 }
 
+const Options<mesh::ImportOptions>& import_options()
+{
+  using Import = mesh::ImportOptions;
+  static const Options<Import> options(
+      "mesh",
+      {option<&Import::size>("size", number_in(positive, "the largest edge, in the unit of the geometry")),
+       option<&Import::merge>("merge", number_in(positive, "a distance far below the smallest edge")),
+       option<&Import::ignore_elements>("ignore_elements", truth()),
+       option<&Import::region_array>("region_array", text("the name of an array of cells", 1)),
+       option<&Import::boundaries>(
+           "boundaries",
+           array_of(text({}, 1), 1, "the sets that become boundaries, as [\"top\", \"base\"]"))});
+  return options;
+}
+
 const Table& mesh_table()
 {
   static const Table boxes{.name = "mesh.boxes", .named = keys_of(box_options().table())};
-  static const Table table{.name = "mesh",
-                           .keys = {{"file", text(mesh_hint, 1)},
-                                    {"box", keys_of(box_options().table())},
-                                    {"boxes", keys_of(boxes)}},
-                           .one_of = {"file", "box", "boxes"}};
+  static const Table table = [&]
+  {
+    Table with_options{.name = "mesh",
+                       .keys = std::vector<Key>{{"file", text(mesh_hint, 1)},
+                                                {"box", keys_of(box_options().table())},
+                                                {"boxes", keys_of(boxes)}} +
+                               import_options().table().keys,
+                       .one_of = {"file", "box", "boxes"}};
+    for (const Key& key : import_options().table().keys)
+      with_options.relations.push_back({.key = key.name, .needs = {"file"}});
+    return with_options;
+  }();
   return table;
 }
 
@@ -89,9 +111,14 @@ mesh::MeshSource read_mesh_source(const Node& node, const std::filesystem::path&
   const std::string key = table.only(hint);
   if (key.empty()) throw InputError(node.where, "neither file nor box is given", hint);
   const Node& given = table.require(key);
+  for (const Key& option : import_options().table().keys)
+    if (const Node* node = table.find(option.name); node != nullptr && key != "file")
+      throw InputError(node->where, "goes with a mesh from a file", "take it out beside a box");
   if (key == "boxes") return read_boxes(given);
   if (key == "box") return read_box(given);
-  return mesh::MeshFile{case_directory / table.get<std::string>(key), given.where};
+  mesh::MeshFile file{case_directory / table.get<std::string>(key), given.where};
+  import_options().read(table, file.options);
+  return file;
 }
 
 const Table& units_table()

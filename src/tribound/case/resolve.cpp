@@ -14,6 +14,7 @@
 #include "tribound/case/geometry_resolver.h"
 #include "tribound/case/node.h"
 #include "tribound/certify/bound/balance.h"
+#include "tribound/mesh/gmsh_geometry.h"
 
 namespace tribound::case_file
 {
@@ -209,11 +210,12 @@ std::vector<problem::Region<dim>> regions_of(const Config& config, std::span<con
 }
 
 /// The author of a mesh file names boundaries for a purpose, so omitting one from the case is a mistake. The
-/// sides of a box have names whether they are needed or not.
+/// sides of a box and the faces of a CAD geometry have names whether they are needed or not.
 template <int dim>
 void check_all_mentioned(const Config& config, std::span<const std::string> groups)
 {
-  if (!std::holds_alternative<mesh::MeshFile>(config.mesh)) return;
+  const auto* file = std::get_if<mesh::MeshFile>(&config.mesh);
+  if (file == nullptr || mesh::has_named_entities(file->path)) return;
   const auto is_paired = [&](const std::string& group)
   {
     return std::ranges::any_of(config.contacts,

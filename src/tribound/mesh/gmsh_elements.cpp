@@ -116,6 +116,17 @@ std::vector<int> node_order(const ElementType& type)
   return order;
 }
 
+}  // namespace
+
+GmshType to_gmsh(const ElementType& type)
+{
+  const auto known = std::ranges::find(numbered_types, type, &NumberedType::type);
+  return {known->number, type, node_order(type)};
+}
+
+namespace
+{
+
 constexpr int n_orders = 2;
 
 /// Throws unless it is a type of order 1 or 2 that is known.
@@ -165,11 +176,7 @@ void check_elements(const Where& where, int mesh_dim)
 std::vector<GmshType> gmsh_types(const Where& where, int dim)
 {
   std::vector<GmshType> types;
-  for (const int number : gmsh::element_types(dim))
-  {
-    const NumberedType known = known_type(where, number);
-    types.push_back({number, known.type, node_order(known.type)});
-  }
+  for (const int number : gmsh::element_types(dim)) types.push_back(to_gmsh(known_type(where, number).type));
   return types;
 }
 

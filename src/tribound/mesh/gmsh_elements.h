@@ -23,6 +23,9 @@ struct GmshType
 /// The type with this number of Gmsh's; nothing if it is not read.
 [[nodiscard]] std::optional<ElementType> gmsh_type(int number);
 
+/// Gmsh's number of a known type, and the order of its nodes.
+[[nodiscard]] GmshType to_gmsh(const ElementType& type);
+
 /// 3 if there are solids of any shape, else 2. Throws InputError where there are no surfaces either.
 [[nodiscard]] int mesh_dimension(const Where& where);
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cassert>
 #include <new>
+#include <numbers>
 #include <type_traits>
 
 namespace tribound::mesh::gmsh
@@ -103,6 +104,17 @@ void renumber_nodes_as()
 }
 
 template <typename Function>
+void classify_surfaces_as(double angle)
+{
+  constexpr const char* name = "gmshModelMeshClassifySurfaces";
+  // With boundaries, in patches that can be parametrised; curves are not cut.
+  if constexpr (takes<Function, double, int, int, double>)
+    call<Function>(name, angle, 1, 1, std::numbers::pi);
+  else  // and whether the triangles become geometry at once
+    call<Function>(name, angle, 1, 1, std::numbers::pi, 0);
+}
+
+template <typename Function>
 int element_type_as(std::size_t element)
 {
   Answer<std::size_t> nodes;
@@ -140,11 +152,6 @@ void initialize()
   initialize_as<decltype(gmshInitialize)>();
 }
 
-void finalize()
-{
-  call<decltype(gmshFinalize)>("gmshFinalize");
-}
-
 void open(const std::string& file)
 {
   call<decltype(gmshOpen)>("gmshOpen", file.c_str());
@@ -155,14 +162,14 @@ void set_number(const std::string& option, double value)
   call<decltype(gmshOptionSetNumber)>("gmshOptionSetNumber", option.c_str(), value);
 }
 
+void set_string(const std::string& option, const std::string& value)
+{
+  call<decltype(gmshOptionSetString)>("gmshOptionSetString", option.c_str(), value.c_str());
+}
+
 void start_logger()
 {
   call<decltype(gmshLoggerStart)>("gmshLoggerStart");
-}
-
-void stop_logger()
-{
-  call<decltype(gmshLoggerStop)>("gmshLoggerStop");
 }
 
 std::vector<std::string> log()
@@ -182,6 +189,31 @@ std::vector<Entity> entities(int dim)
   Answer<int> flat;
   call<decltype(gmshModelGetEntities)>("gmshModelGetEntities", &flat.data, &flat.size, dim);
   return pairs(flat);
+}
+
+std::string entity_name(const Entity& entity)
+{
+  Answer<char> name;
+  call<decltype(gmshModelGetEntityName)>("gmshModelGetEntityName", entity.first, entity.second, &name.data);
+  return name.data;
+}
+
+std::size_t n_bounded(const Entity& entity)
+{
+  Answer<int> upward;
+  Answer<int> downward;
+  call<decltype(gmshModelGetAdjacencies)>("gmshModelGetAdjacencies", entity.first, entity.second,
+                                          &upward.data, &upward.size, &downward.data, &downward.size);
+  return upward.size;
+}
+
+Box bounding_box()
+{
+  Box box{};
+  auto& [a, b] = box;
+  call<decltype(gmshModelGetBoundingBox)>("gmshModelGetBoundingBox", -1, -1, a.data(), a.data() + 1,
+                                          a.data() + 2, b.data(), b.data() + 1, b.data() + 2);
+  return box;
 }
 
 std::vector<double> position(int point)
@@ -211,6 +243,18 @@ std::vector<int> entities_of(const Entity& group)
   call<decltype(gmshModelGetEntitiesForPhysicalGroup)>("gmshModelGetEntitiesForPhysicalGroup", group.first,
                                                        group.second, &tags.data, &tags.size);
   return tags.values();
+}
+
+void fill_surface(double angle)
+{
+  classify_surfaces_as<decltype(gmshModelMeshClassifySurfaces)>(angle);
+  call<decltype(gmshModelMeshCreateGeometry)>("gmshModelMeshCreateGeometry", nullptr, std::size_t{0});
+  std::vector<int> surfaces;
+  for (const Entity& surface : entities(2)) surfaces.push_back(surface.second);
+  int shell = call<decltype(gmshModelGeoAddSurfaceLoop)>("gmshModelGeoAddSurfaceLoop", surfaces.data(),
+                                                         surfaces.size(), -1);
+  call<decltype(gmshModelGeoAddVolume)>("gmshModelGeoAddVolume", &shell, std::size_t{1}, -1);
+  call<decltype(gmshModelGeoSynchronize)>("gmshModelGeoSynchronize");
 }
 
 void generate(int dim)

@@ -5,6 +5,7 @@
 /// many cases take to solve. Declares the functions used here, by the names they have in Gmsh's own
 /// interfaces. Each throws GmshError where Gmsh reports a failure.
 
+#include <array>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -28,12 +29,11 @@ class GmshError : public std::runtime_error
 [[nodiscard]] std::string version();
 
 void initialize();
-void finalize();
 void open(const std::string& file);
 void set_number(const std::string& option, double value);
+void set_string(const std::string& option, const std::string& value);
 
 void start_logger();
-void stop_logger();
 [[nodiscard]] std::vector<std::string> log();
 
 /// Dimension and tag.
@@ -41,6 +41,17 @@ using Entity = std::pair<int, int>;
 
 [[nodiscard]] int dimension();
 [[nodiscard]] std::vector<Entity> entities(int dim);
+/// The label of an entity of a CAD file, "Shapes/part/bolt"; empty: none.
+[[nodiscard]] std::string entity_name(const Entity& entity);
+/// How many entities of the next dimension it bounds.
+[[nodiscard]] std::size_t n_bounded(const Entity& entity);
+struct Box
+{
+  std::array<double, 3> lower;
+  std::array<double, 3> upper;
+};
+/// Around the whole geometry.
+[[nodiscard]] Box bounding_box();
 /// The coordinates of a point of the geometry.
 [[nodiscard]] std::vector<double> position(int point);
 [[nodiscard]] std::vector<Entity> physical_groups(int dim);
@@ -48,6 +59,9 @@ using Entity = std::pair<int, int>;
 /// Tags of the entities of a group, negative where an entity is reversed.
 [[nodiscard]] std::vector<int> entities_of(const Entity& group);
 
+/// Makes surfaces of the triangles that are loaded, cut at edges sharper than `angle` (radians), and one
+/// volume inside them all.
+void fill_surface(double angle);
 /// Meshes the geometry up to this dimension.
 void generate(int dim);
 void renumber_nodes();

@@ -13,6 +13,7 @@
 
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/gmsh_elements.h"
+#include "tribound/mesh/gmsh_geometry.h"
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_session.h"
 
@@ -62,6 +63,55 @@ Groups read_groups(const Where& where, int dim)
   return groups;
 }
 
+/// Entities of a CAD geometry or numbers of properties as groups, where the format has no others.
+class EntityGroups
+{
+ public:
+  EntityGroups(const std::filesystem::path& file, int mesh_dim, std::vector<std::string>& notes)
+      : file_(file), mesh_dim_(mesh_dim), notes_(notes)
+  {
+  }
+
+  [[nodiscard]] Groups read(int dim) const
+  {
+    Groups groups;
+    std::size_t n_between = 0;
+    for (const gmsh::Entity& entity : gmsh::entities(dim))
+    {
+      if (has_named_entities(file_) && dim < mesh_dim_ && gmsh::n_bounded(entity) != 1)
+      {
+        n_between += gmsh::n_bounded(entity) > 1 ? 1 : 0;
+        continue;
+      }
+      groups.of_entity.emplace(entity.second, static_cast<int>(groups.names.size()));
+      groups.names.push_back(name_of(entity, groups.names));
+    }
+    if (n_between > 0)
+      notes_.push_back(fmt::format("{}: {} {}s lie between two {}s, which are joined there", file_.string(),
+                                   n_between, entity_word(dim), entity_word(mesh_dim_)));
+    return groups;
+  }
+
+ private:
+  /// The last part of its label, such as "bolt" of "Shapes/part/bolt", if no other has it; "face7".
+  [[nodiscard]] std::string name_of(const gmsh::Entity& entity, std::span<const std::string> taken) const
+  {
+    constexpr std::array<std::string_view, 4> words = {"point", "edge", "face", "solid"};
+    const std::string number = std::to_string(entity.second);
+    if (!has_named_entities(file_)) return number;
+    const std::string label = gmsh::entity_name(entity);
+    std::string name = label.substr(label.rfind('/') + 1);
+    if (name.empty() || name.starts_with("Open CASCADE"))  // its writer names what has no name
+      return std::string(words[entity.first]) + number;
+    if (std::ranges::find(taken, name) != taken.end()) name += "_" + number;
+    return name;
+  }
+
+  const std::filesystem::path& file_;
+  int mesh_dim_;
+  std::vector<std::string>& notes_;
+};
+
 void check_groups_filled(const Where& where, int dim, const Groups& groups, std::span<const char> is_filled)
 {
   constexpr std::array<std::string_view, 4> elements = {"points", "edges", "faces", "cells"};
@@ -71,12 +121,21 @@ void check_groups_filled(const Where& where, int dim, const Groups& groups, std:
                        fmt::format("mesh the {}s of the group, or remove it", entity_word(dim)));
 }
 
+bool is_nastran(const std::filesystem::path& file)
+{
+  return file.extension() == ".bdf" || file.extension() == ".nas";
+}
+
 /// The loaded model, entity by entity and type by type.
 class GmshReader
 {
  public:
-  GmshReader(const std::filesystem::path& file, int dim)
-      : dim_(dim), is_geo_(file.extension() == ".geo"), mesh_{.source = {.file = file.string()}}
+  GmshReader(const std::filesystem::path& file, int dim, std::vector<std::string>& notes)
+      : dim_(dim),
+        is_geometry_(is_geometry(file)),
+        has_physical_groups_(!has_named_entities(file) && !is_nastran(file)),
+        entity_groups_(file, dim, notes),
+        mesh_{.source = {.file = file.string()}}
   {
     check_elements(mesh_.source, dim);
     read_nodes();
@@ -84,14 +143,18 @@ class GmshReader
 
   ImportedMesh read()
   {
-    read_cells(read_groups(mesh_.source, dim_));
-    read_facets(read_groups(mesh_.source, dim_ - 1));
+    read_cells(groups_of(dim_));
+    read_facets(groups_of(dim_ - 1));
     drop_points();
     return std::move(mesh_);
   }
 
  private:
   void read_nodes();
+  [[nodiscard]] Groups groups_of(int dim) const
+  {
+    return has_physical_groups_ ? read_groups(mesh_.source, dim) : entity_groups_.read(dim);
+  }
   void read_cells(const Groups& groups);
   void read_facets(const Groups& groups);
   void drop_points();
@@ -100,7 +163,9 @@ class GmshReader
   [[noreturn]] void throw_homeless(std::size_t n, int entity, std::span<const Index> nodes) const;
 
   int dim_;
-  bool is_geo_;
+  bool is_geometry_;
+  bool has_physical_groups_;
+  EntityGroups entity_groups_;
   ImportedMesh mesh_;
   std::vector<Index> node_of_tag_{};
 };
@@ -213,7 +278,7 @@ void GmshReader::read_facets(const Groups& groups)
 /// lost: they are left out without a word.
 void GmshReader::drop_points()
 {
-  std::vector<char> is_kept(mesh_.nodes.size(), is_geo_ ? 0 : 1);
+  std::vector<char> is_kept(mesh_.nodes.size(), is_geometry_ ? 0 : 1);
   for (const std::size_t tag : gmsh::nodes(0).tags) is_kept[node_of_tag_[tag]] = 0;
   const auto each_block = [&](const auto& visit)
   {
@@ -245,10 +310,10 @@ void GmshReader::drop_points()
 
 }  // namespace
 
-ImportedMesh load_gmsh(const std::filesystem::path& file)
+ImportedMesh load_gmsh(const MeshFile& source, std::vector<std::string>& notes)
 {
-  const GmshSession session(file);
-  return GmshReader(file, mesh_dimension({.file = file.string()})).read();
+  open_in_gmsh(source, notes);
+  return GmshReader(source.path, mesh_dimension({.file = source.path.string()}), notes).read();
 }
 
 }  // namespace tribound::mesh

@@ -3,15 +3,17 @@
 /// @file gmsh_load.h
 /// The part of gmsh.cpp that runs in a process of its own: reads or meshes a file by Gmsh's library.
 
-#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tribound/mesh/import/imported_mesh.h"
+#include "tribound/mesh/source.h"
 
 namespace tribound::mesh
 {
 
-/// Reads a .msh or meshes a .geo, group by group. Throws InputError, and what Gmsh throws; may also crash or
-/// hang where Gmsh does.
-[[nodiscard]] ImportedMesh load_gmsh(const std::filesystem::path& file);
+/// Reads a mesh or meshes a geometry, group by group; see read_gmsh(). Throws InputError, and what Gmsh
+/// throws; may also crash or hang where Gmsh does.
+[[nodiscard]] ImportedMesh load_gmsh(const MeshFile& source, std::vector<std::string>& notes);
 
 }  // namespace tribound::mesh

@@ -1,11 +1,14 @@
 #pragma once
 
 /// @file gmsh_session.h
-/// A Gmsh model loaded from a file; the only place where Gmsh is started and stopped.
+/// A Gmsh model loaded from a file; the only place where Gmsh is started.
 
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
-#include "tribound/base/error.h"
+#include "tribound/mesh/source.h"
 
 namespace tribound::mesh
 {
@@ -17,24 +20,20 @@ struct ReadingLimits
   double seconds;  ///< of CPU time
 };
 
-/// For a .msh by its size: several times what sound files need, so that wrong counts in a damaged one, which
-/// Gmsh believes, cost neither gigabytes nor minutes. For a .geo infinite: a few lines may ask for any mesh.
+/// For a mesh by the size of the file: several times what sound files need, so that wrong counts in a damaged
+/// one, which Gmsh believes, cost neither gigabytes nor minutes. For a geometry infinite: a few lines may ask
+/// for any mesh.
 [[nodiscard]] ReadingLimits reading_limits(const std::filesystem::path& file);
 
-/// Gmsh holds one global state per process: one session at a time. Its messages go to stdout and stderr.
-class GmshSession
-{
- public:
-  /// Opens a .msh within its reading_limits(), or opens and meshes a .geo; in a process of its own
-  /// (base/apart.h). Throws InputError with Gmsh's own message, placed at `file`, and std::bad_alloc.
-  explicit GmshSession(const std::filesystem::path& file);
-  ~GmshSession();
-  GmshSession(const GmshSession&) = delete;
-  GmshSession& operator=(const GmshSession&) = delete;
-};
+/// Starts Gmsh and opens a mesh within its reading_limits(), or opens and meshes a geometry; in a process of
+/// its own (base/apart.h), once, which ends without stopping Gmsh: after elements that it takes for others it
+/// crashes then. Its messages go to stdout and stderr. `notes` gets what a geometry was meshed with. Throws
+/// InputError with Gmsh's own message, placed at the file, and std::bad_alloc.
+void open_in_gmsh(const MeshFile& source, std::vector<std::string>& notes);
 
-/// Throws InputError at `where` unless the file can be read and is, by its suffix and its first characters, a
-/// .msh, a .geo or an .inp.
-void check_mesh_file(const std::filesystem::path& file, const Where& where);
+/// Runs one step of Gmsh, which reports failure by an exception, by a message, or by both: an InputError
+/// "Gmsh cannot `what`: ...".
+void run_gmsh(const std::filesystem::path& file, const std::string& what, const std::string& hint,
+              const std::function<void()>& step);
 
 }  // namespace tribound::mesh

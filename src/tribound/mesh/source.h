@@ -13,11 +13,22 @@
 namespace tribound::mesh
 {
 
-/// A mesh read through Gmsh (.msh of any version, .geo).
+/// What a reader does beyond what the file says.
+struct ImportOptions
+{
+  double size = 0;               ///< largest edge in a geometry that is to be meshed; 0: by its extent
+  double merge = 0;              ///< nodes of a body not farther apart than this become one; 0: none
+  bool ignore_elements = false;  ///< elements without a counterpart are left out, with a note
+  std::string region_array{};    ///< the cell array that has the regions, where a format has arrays
+  std::vector<std::string> boundaries{};  ///< the sets that become boundaries; empty: all
+};
+
+/// A mesh or a geometry in one of the formats of read_imported().
 struct MeshFile
 {
   std::filesystem::path path;
   Where where = {};  ///< for messages
+  ImportOptions options = {};
 };
 
 /// The structured mesh of a box; the length of the lists is the dimension. Boundaries: left right (x), bottom

@@ -18,7 +18,7 @@
 
 #include "tribound/case/resolve.h"
 #include "tribound/io/file/atomic_file.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound
 {

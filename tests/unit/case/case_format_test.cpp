@@ -65,6 +65,9 @@ std::optional<InputError> refusal(const Row& row, const std::string& value)
   for (const std::string& companion : companions(row)) overrides.push_back(companion);
   std::string text = valid_case(row.table);
   if (row.name() == "mesh.file") text = "mesh.file = " + value + "\nmaterial = { E = 1, nu = 0 }\n";
+  const std::set<std::string> options = {"size", "merge", "ignore_elements", "region_array", "boundaries"};
+  if (row.table == "mesh" && options.contains(row.key))
+    text = "mesh.file = \"a.msh\"\nmaterial = { E = 1, nu = 0 }\n";
   if (row.name() == "boundary.top.contact") text = valid_case("") + "boundary.top.contact = " + value + "\n";
   if (row.name() == "boundary.top.slider" || belongs_to_slider(row)) text = valid_case("");
   if (row.name() == "contact.0.joint") text = valid_case("") + "contact = [{}]\n";
@@ -185,6 +188,13 @@ void try_out(const Row& row)
     expect_accepted(row, "[0, \"x\", -1]");
     expect_refused(row, "[1, 2]");
     expect_refused(row, "1");
+  }
+  else if (row.type == "array of names")
+  {
+    expect_accepted(row, "[\"a\", \"b\"]");
+    expect_refused(row, "[]");
+    expect_refused(row, "[1]");
+    expect_refused(row, "\"a\"");
   }
   else if (row.type.starts_with("array of `"))
   {

@@ -13,7 +13,7 @@
 #include "support/meshes.h"
 #include "support/meshes_by_place.h"
 #include "tribound/mesh/bisect.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound::test
@@ -43,7 +43,7 @@ mesh::Mesh<dim> written_and_read(const mesh::Mesh<dim>& mesh, std::span<const st
 {
   const testing_mesh::Directory directory;
   io::write_gmsh<dim>(directory / "again.msh", mesh, left_out);
-  return std::get<mesh::Mesh<dim>>(mesh::read_gmsh({directory / "again.msh", {}}));
+  return std::get<mesh::Mesh<dim>>(mesh::read_mesh(mesh::MeshFile{directory / "again.msh", {}}));
 }
 
 template <int dim>

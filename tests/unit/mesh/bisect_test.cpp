@@ -297,9 +297,9 @@ TYPED_TEST(Bisect, MeshesFromGmsh)
   const Directory directory;
   const auto source = directory.write("mesh.geo", dim == 2 ? plate_geo : solid_geo);
   std::mt19937 random(11);
-  const auto original = std::get<mesh::Mesh<dim>>(mesh::read_gmsh(source));
+  const auto original = std::get<mesh::Mesh<dim>>(mesh::read_mesh(source));
   const mesh::Mesh<dim> mesh = bisect_and_check(
-      std::get<mesh::Mesh<dim>>(mesh::read_gmsh(source)), dim == 2 ? 8 : 4,
+      std::get<mesh::Mesh<dim>>(mesh::read_mesh(source)), dim == 2 ? 8 : 4,
       [&](const mesh::Mesh<dim>& m, int) { return random_cells(m.n_cells(), 0.1, random); }, 1);
   expect_bounded_angles(mesh, original);
 }

@@ -61,7 +61,7 @@ TEST_P(BadMesh, IsRefused)
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   for (int attempt = 0; attempt < 2; ++attempt)
-    messages.push_back(message_of([&] { (void)mesh::read_gmsh(source); }));
+    messages.push_back(message_of([&] { (void)mesh::read_mesh(source); }));
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(messages[0], messages[1]) << "the first failure has left a trace";
@@ -72,9 +72,9 @@ TEST_P(BadMesh, IsRefused)
 INSTANTIATE_TEST_SUITE_P(
     Gmsh, BadMesh,
     testing::ValuesIn(std::vector<BadFile>{
-        {"UnknownSuffix", "block.stl", "solid", {"case.toml:3: mesh.file: ", "is none of .msh, .geo"}},
+        {"UnknownSuffix", "block.cas", "solid", {"case.toml:3: mesh.file: ", "is of no format that is read"}},
         {"Empty", "block.msh", "", {"case.toml:3", "is empty"}},
-        {"NoMesh", "block.msh", "hello\n", {"case.toml:3", "is not a Gmsh mesh", "$MeshFormat"}},
+        {"NoMesh", "block.msh", "hello\n", {"case.toml:3", "is not a .msh", "$MeshFormat"}},
         {"UnknownVersion",
          "block.msh",
          "$MeshFormat\n9.3 0 8\n$EndMeshFormat\n",
@@ -230,8 +230,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Gmsh, AMissingFileIsNamedWhereTheCaseAsksForIt)
 {
   expect_input_error(
-      [] {
-        (void)mesh::read_gmsh({"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
+      []
+      {
+        (void)mesh::read_mesh(
+            mesh::MeshFile{"nowhere/block.msh", {.file = "case.toml", .key = "mesh.file", .line = 3}});
       },
       {"case.toml:3: mesh.file: mesh file \"nowhere/block.msh\" does not exist", "relative to"});
 }
@@ -241,7 +243,8 @@ TEST(Gmsh, WaitsOnlySoLongForASignOfProgress)
 {
   const Directory directory;
   const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
-  expect_input_error([&] { (void)mesh::read_gmsh(source, {}, nullptr, 0.3); },
+  std::vector<std::string> notes;
+  expect_input_error([&] { (void)mesh::read_imported(source, nullptr, 0.3, notes); },
                      {"loop.geo: Gmsh shows no progress for 0.3 s and was ended", "apt install gmsh"});
 }
 
@@ -250,14 +253,18 @@ TEST(Gmsh, CanBeInterrupted)
   const Directory directory;
   const mesh::MeshFile source = directory.write("loop.geo", "For i In {1:1000000000}\nEndFor\n");
   const std::atomic<bool> stop = true;
-  EXPECT_THROW((void)mesh::read_gmsh(source, {}, &stop), SolveError);
+  EXPECT_THROW((void)mesh::read_mesh(source, {}, &stop), SolveError);
 }
 
 TEST(Gmsh, ADirectoryIsNotAFile)
 {
   const Directory directory;
   std::filesystem::create_directory(directory / "block.msh");
-  expect_input_error([&] { (void)mesh::read_gmsh({directory / "block.msh", {}}); }, {"is a directory"});
+  expect_input_error(
+      [&] {
+        (void)mesh::read_mesh(mesh::MeshFile{directory / "block.msh", {}});
+      },
+      {"is a directory"});
 }
 
 }  // namespace

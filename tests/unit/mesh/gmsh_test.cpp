@@ -103,14 +103,14 @@ TEST_P(GmshFormat, IsRead)
   testing::internal::CaptureStderr();
   if (version > 1)  // version 1 has no names
   {
-    expect_plane(mesh::read_gmsh(saved(directory, plane_geo, version, binary)));
-    expect_solid(mesh::read_gmsh(saved(directory, solid_geo, version, binary)));
-    expect_plane(mesh::read_gmsh(saved(directory, plane_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
-    expect_solid(mesh::read_gmsh(saved(directory, solid_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
+    expect_plane(mesh::read_mesh(saved(directory, plane_geo, version, binary)));
+    expect_solid(mesh::read_mesh(saved(directory, solid_geo, version, binary)));
+    expect_plane(mesh::read_mesh(saved(directory, plane_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
+    expect_solid(mesh::read_mesh(saved(directory, solid_geo + "Mesh.ElementOrder = 2;\n", version, binary)));
   }
   else
   {
-    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(saved(directory, plane_geo, version, binary)));
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(saved(directory, plane_geo, version, binary)));
     EXPECT_NEAR(volume(mesh), 3, 1e-12);
     EXPECT_EQ(mesh.region_names().size(), 2U);
     EXPECT_THAT(mesh.boundary_names(), testing::Contains("17"));
@@ -131,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(Gmsh, GmshFormat,
 TEST(Gmsh, GeometriesAreMeshed)
 {
   const Directory directory;
-  expect_plane(mesh::read_gmsh(directory.write("plane.geo", plane_geo)));
-  expect_solid(mesh::read_gmsh(directory.write("solid.geo", solid_geo)));
+  expect_plane(mesh::read_mesh(directory.write("plane.geo", plane_geo)));
+  expect_solid(mesh::read_mesh(directory.write("solid.geo", solid_geo)));
 }
 
 /// The number of second-order facets in a group; each of their nodes passes `check`.
@@ -168,15 +168,15 @@ TEST(Gmsh, OfOrderTwoTheNodesOfBoundariesAreKept)
   for (const mesh::MeshFile& file :
        {saved(directory, disc + second, 2.2, false), directory.write("disc.geo", disc + second)})
   {
-    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(file));
-    const auto straight = std::get<mesh::Mesh<2>>(mesh::read_gmsh(directory.write("disc1.geo", disc)));
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(file));
+    const auto straight = std::get<mesh::Mesh<2>>(mesh::read_mesh(directory.write("disc1.geo", disc)));
     EXPECT_TRUE(straight.labels().quadratic_facets->tags.empty());
     EXPECT_NEAR(volume(mesh), volume(straight), 1e-12);
     EXPECT_EQ(mesh.n_cells(), straight.n_cells());
     EXPECT_EQ(check_nodes(mesh, 0, is_on_unit_ball), n_facets(mesh, 0));
     EXPECT_GT(n_facets(mesh, 0), 10U);
   }
-  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_gmsh(directory.write("ball.geo", ball + second)));
+  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(directory.write("ball.geo", ball + second)));
   EXPECT_EQ(check_nodes(mesh, 0, is_on_unit_ball), n_facets(mesh, 0));
   EXPECT_GT(n_facets(mesh, 0), 40U);
   EXPECT_NEAR(mesh::sagitta<3>(*mesh.labels().quadratic_facets, 0), 0.05, 0.05);
@@ -185,7 +185,7 @@ TEST(Gmsh, OfOrderTwoTheNodesOfBoundariesAreKept)
 TEST(Gmsh, AGeometryThatMeshesItselfIsNotMeshedAgain)
 {
   const Directory directory;
-  expect_plane(mesh::read_gmsh(directory.write("plane.geo", plane_geo + "Mesh 2;\n")));
+  expect_plane(mesh::read_mesh(directory.write("plane.geo", plane_geo + "Mesh 2;\n")));
 }
 
 TEST(Gmsh, SurfacesOrientedDownAreTurned)
@@ -194,7 +194,7 @@ TEST(Gmsh, SurfacesOrientedDownAreTurned)
   std::string geo = plane_geo;
   geo.replace(geo.find("{1, 7, 5, 6}"), 12, "{-6, -5, -7, -1}");
   const auto file = saved(directory, geo, 4.1, false);
-  expect_plane(mesh::read_gmsh(file));
+  expect_plane(mesh::read_mesh(file));
 }
 
 TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
@@ -203,7 +203,7 @@ TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
   const std::string geo = plane_geo.substr(0, plane_geo.find("Physical"));
   for (const mesh::MeshFile& file : {saved(directory, geo, 4.1, false), directory.write("bare.geo", geo)})
   {
-    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(file));
+    const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(file));
     EXPECT_THAT(mesh.region_names(), testing::ElementsAre("domain"));
     EXPECT_THAT(mesh.boundary_names(), testing::IsEmpty());
     EXPECT_NEAR(volume(mesh), 3, 1e-12);
@@ -213,7 +213,7 @@ TEST(Gmsh, WithoutPhysicalGroupsEverythingIsOneRegion)
 TEST(Gmsh, PointsOfTheGeometryThatNoCellUsesAreDropped)
 {
   const Directory directory;
-  expect_plane(mesh::read_gmsh(saved(directory, plane_geo, 4.1, false, true)));
+  expect_plane(mesh::read_mesh(saved(directory, plane_geo, 4.1, false, true)));
 }
 
 TEST(Gmsh, NodesThatNoCellUsesAreDroppedAndCounted)
@@ -237,7 +237,7 @@ TEST(Gmsh, SparseNodeTagsAreFine)
 {
   const Directory directory;
   const auto mesh = std::get<mesh::Mesh<2>>(
-      mesh::read_gmsh(directory.write("sparse.msh",
+      mesh::read_mesh(directory.write("sparse.msh",
                                       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n"
                                       "7 0 0 0\n900000 1 0 0\n80000000 0 1 0\n$EndNodes\n"
                                       "$Elements\n1\n1 2 2 1 1 7 900000 80000000\n"
@@ -251,8 +251,8 @@ TEST(Gmsh, ReadingTwiceGivesTheSame)
 {
   const Directory directory;
   const mesh::MeshFile file = saved(directory, solid_geo, 4.1, true);
-  const auto first = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
-  const auto second = std::get<mesh::Mesh<3>>(mesh::read_gmsh(file));
+  const auto first = std::get<mesh::Mesh<3>>(mesh::read_mesh(file));
+  const auto second = std::get<mesh::Mesh<3>>(mesh::read_mesh(file));
   EXPECT_TRUE(std::ranges::equal(first.cells(), second.cells()));
   EXPECT_TRUE(std::ranges::equal(first.vertices(), second.vertices()));
 }
@@ -269,7 +269,7 @@ TEST(Gmsh, ReadsBesideThreadsAndAnotherModel)
   EXPECT_GE(n_threads, 1);
   gmsh::initialize(0, nullptr, false);
   gmsh::model::add("mine");
-  const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_gmsh(source));
+  const auto mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(source));
   EXPECT_NEAR(volume(mesh), 3.0, 1e-14);
   std::string name;
   gmsh::model::getCurrent(name);

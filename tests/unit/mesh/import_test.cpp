@@ -4,10 +4,9 @@
 #include <fmt/ranges.h>
 #include <gmsh.h>
 
-#include "tribound/base/apart.h"
 #include "tribound/mesh/gmsh_elements.h"
-#include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/import/cell_faces.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/simplices.h"
 #include "tribound/mesh/quadratic_facets.h"
 #include "unit/mesh/imported_testing.h"
@@ -208,10 +207,9 @@ TEST_P(ImportFromGmsh, OfThisTypeIsRead)
     EXPECT_EQ(mesh::gmsh_type(types.at(0)), type);
     gmsh::finalize();
   }
-  EXPECT_EQ(
-      run_apart([&] { return "misplaced: " + testing_mesh::misplaced_nodes(mesh::load_gmsh(file.path)); })
-          .result,
-      "misplaced: ");
+  std::vector<std::string> notes;
+  EXPECT_EQ(testing_mesh::misplaced_nodes(mesh::read_imported(file, nullptr, mesh::default_patience, notes)),
+            "");
   std::visit([&](const auto& mesh) { expect_box(mesh, mesh::has_middles(type)); }, mesh::read_mesh(file));
 }
 
@@ -236,7 +234,7 @@ TEST(Import, LayersOfGmshHaveTheVolumesAndNamesOfItsOwnTetrahedra)
         "Physical Volume(\"body\") = {{out[1]}}; Physical Surface(\"round\") = {{out[3]}};\n"
         "Physical Surface(\"base\") = {{1}}; {}\n",
         recombine.empty() ? "" : recombine, recombine.empty() ? "" : "Recombine;", options);
-    return std::get<mesh::Mesh<3>>(mesh::read_gmsh(directory.write(name + ".geo", geo)));
+    return std::get<mesh::Mesh<3>>(mesh::read_mesh(directory.write(name + ".geo", geo)));
   };
   const mesh::Mesh<3> own = read("tetrahedra", "", "");
   const auto measure = [](const mesh::Mesh<3>& mesh, const std::string& name)

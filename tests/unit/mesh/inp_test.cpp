@@ -134,6 +134,12 @@ const std::string two_cubes =
     "1,2\n"
     "12,0,1,2\n*ELEMENT, TYPE=C3D8R\n1, 1,2,3,4,5,6,7,8\n2, 5,6,7,8,9,10,11,12\n";
 
+mesh::ImportedMesh read(const std::filesystem::path& deck)
+{
+  std::vector<std::string> notes;
+  return mesh::read_inp(deck, false, notes);
+}
+
 mesh::Mesh<3> solid(const Directory& directory, const std::string& text,
                     std::vector<std::string>* notes = nullptr)
 {
@@ -217,11 +223,11 @@ TEST(Inp, InstancesAreMovedBeforeTheyAreTurned)
 {
   const Directory directory;
   const mesh::ImportedMesh mesh =
-      mesh::read_inp(directory
-                         .write("deck.inp", "*PART,NAME=p\n" + two_cubes +
-                                                "*END PART\n*INSTANCE,NAME=i,PART=p\n3,0,0\n"
-                                                "1,0,0, 1,0,1, 90\n*END INSTANCE\n")
-                         .path);
+      read(directory
+               .write("deck.inp", "*PART,NAME=p\n" + two_cubes +
+                                      "*END PART\n*INSTANCE,NAME=i,PART=p\n3,0,0\n"
+                                      "1,0,0, 1,0,1, 90\n*END INSTANCE\n")
+               .path);
   // (1, 0, 0) -> (4, 0, 0) -> about (1, 0): (1, 3, 0)
   EXPECT_LT((mesh.nodes[1] - Point<3>(1, 3, 0)).norm(), 1e-14);
 }
@@ -257,7 +263,84 @@ TEST(Inp, ShellsOnFacesOfSolidsAreBoundaries)
           .write("deck.inp",
                  two_cubes + "*ELEMENT,TYPE=S4,ELSET=skin\n11, 4,3,2,1\n*SHELL SECTION,ELSET=skin\n")
           .path;
-  expect_input_error([&] { (void)mesh::read_inp(both); }, {"deck.inp:19: element 11 is in a *SHELL SECTION"});
+  expect_input_error([&] { (void)read(both); }, {"deck.inp:19: element 11 is in a *SHELL SECTION"});
+}
+
+/// Springs with a spare comma, a shell beside the solids, a surface on it, a section of a skin.
+TEST(Inp, ElementsWithoutCounterpartAreLeftOutIfAsked)
+{
+  const Directory directory;
+  const std::string deck =
+      two_cubes +
+      "*NODE\n13,3,0,0\n14,4,0,0\n15,4,1,0\n*ELEMENT,TYPE=SPRINGA,ELSET=springs\n21, 9,\n13\n22, 10,13\n"
+      "*ELEMENT,TYPE=S3,ELSET=fin\n31, 13,14,15\n*ELEMENT,TYPE=S4,ELSET=skin\n11, 4,3,2,1\n"
+      "*SHELL SECTION,ELSET=fin\n*SURFACE,NAME=top\n2, S2\n*SURFACE,NAME=of_fin\nfin, S1\n"
+      "*ELSET,ELSET=body\n1,2\n";
+  mesh::MeshFile file = directory.write("deck.inp", deck);
+  expect_input_error([&] { (void)mesh::read_mesh(file); }, {"deck.inp:", "element 21 is of type SPRINGA",
+                                                            "ignore_elements = true leaves them out"});
+  file.options.ignore_elements = true;
+  std::vector<std::string> notes;
+  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(file, {}, nullptr, &notes));
+  EXPECT_THAT(mesh.boundary_names(), testing::UnorderedElementsAre("skin", "top"));
+  EXPECT_NEAR(measure_of(mesh, "skin"), 1, 1e-14);
+  EXPECT_NEAR(measure_of(mesh, "top"), 1, 1e-14);
+  EXPECT_NEAR(volume(mesh), 2, 1e-14);
+  EXPECT_THAT(notes, testing::Contains(testing::HasSubstr(
+                         "elements left out: 1 of type S3 (such as 31), 2 of type SPRINGA (such as 21)")));
+}
+
+TEST(Inp, ChosenSetsAreTheBoundaries)
+{
+  const Directory directory;
+  mesh::MeshFile file =
+      directory.write("deck.inp", two_cubes +
+                                      "*SURFACE,NAME=side\n1, S3\n2, S3\n*SURFACE,NAME=lower\n1, S3\n"
+                                      "*NSET,NSET=base\n1,2,3,4\n*NSET,NSET=inner\n5,6,7,8\n");
+  expect_input_error([&] { (void)mesh::read_mesh(file); }, {"is also in group"});
+  file.options.boundaries = {"lower", "base"};
+  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(file));
+  EXPECT_THAT(mesh.boundary_names(), testing::ElementsAre("lower", "base"));
+  file.options.boundaries = {"lower", "bse"};
+  expect_input_error([&] { (void)mesh::read_mesh(file); },
+                     {"there is no set \"bse\" for a boundary", "the sets are side, lower, base, inner"});
+  file.options.boundaries = {"inner"};
+  expect_input_error([&] { (void)mesh::read_mesh(file); }, {"\"inner\" has no facet"});
+}
+
+/// Two cubes of one region with double nodes between them, not quite in one place.
+TEST(Inp, CoincidentNodesOfARegionAreMergedIfAsked)
+{
+  const Directory directory;
+  const std::string cubes =
+      "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
+      "15,0,0,1.0001\n16,1,0,1\n17,1,1,1\n18,0,1,1\n9,0,0,2\n10,1,0,2\n11,1,1,2\n12,0,1,2\n"
+      "*ELEMENT, TYPE=C3D8\n1, 1,2,3,4,5,6,7,8\n2, 15,16,17,18,9,10,11,12\n";
+  mesh::MeshFile file = directory.write("deck.inp", cubes + "*NSET,NSET=base\n1,2,3,4\n");
+  file.options.merge = 1e-3;
+  std::vector<std::string> notes;
+  const auto mesh = std::get<mesh::Mesh<3>>(mesh::read_mesh(file, {}, nullptr, &notes));
+  EXPECT_EQ(mesh.n_vertices(), 12);
+  EXPECT_NEAR(volume(mesh), 2, 1e-3);
+  EXPECT_NEAR(measure_of(mesh, "base"), 1, 1e-14);
+  EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("4 nodes are merged with others")));
+  file.options.merge = 1.1;
+  expect_input_error([&] { (void)mesh::read_mesh(file); },
+                     {"merge = 1.1 makes one node of two of element 1 (hexahedron of 8 nodes)"});
+
+  mesh::MeshFile two = directory.write("two.inp", cubes + "*ELSET,ELSET=a\n1\n*ELSET,ELSET=b\n2\n");
+  two.options.merge = 1e-3;
+  EXPECT_EQ(mesh::read_imported(two, nullptr, 1, notes).nodes.size(), 16U) << "regions stay apart";
+}
+
+TEST(Inp, IncludedFilesAreKnown)
+{
+  const Directory directory;
+  const mesh::MeshFile file = directory.write("deck.inp", "*INCLUDE, INPUT=a.inp\n*NODE, INPUT=b.inp\n");
+  (void)directory.write("a.inp", "*AMPLITUDE, INPUT=nowhere.inp\n");
+  (void)directory.write("b.inp", "1, 0, 0, 0\n");
+  EXPECT_THAT(mesh::files_of_inp(file.path),
+              testing::ElementsAre(file.path, directory / "a.inp", directory / "b.inp"));
 }
 
 /// By Gmsh's own writer, of which only the names of sets and the order of nodes are its own choice.
@@ -302,7 +385,7 @@ TEST(Inp, MiddlesOfGmshsSolidsAreWhereTheyBelong)
             "Physical Volume(\"body\") = {1}; Physical Surface(\"base\") = {1}; Mesh.ElementOrder = 2;\n");
     const auto deck = directory / "part.inp";
     write_by_gmsh(geo.path, deck);
-    const mesh::ImportedMesh mesh = mesh::read_inp(deck);
+    const mesh::ImportedMesh mesh = read(deck);
     EXPECT_EQ(mesh.cells.at(0).type.n_nodes, recombine.empty() ? 15 : 20);
     EXPECT_EQ(testing_mesh::misplaced_nodes(mesh), "");
   }

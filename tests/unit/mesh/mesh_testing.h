@@ -18,7 +18,7 @@
 #include "support/input_error.h"
 #include "support/meshes.h"
 #include "tribound/mesh/geometry.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::testing_mesh

@@ -121,12 +121,12 @@ TEST(Topology, OfGmshMeshesIsTheDefinition)
 {
   const testing_mesh::Directory directory;
   const auto plane = std::get<mesh::Mesh<2>>(
-      mesh::read_gmsh(directory.write("disk.geo",
+      mesh::read_mesh(directory.write("disk.geo",
                                       "SetFactory(\"OpenCASCADE\"); Disk(1) = {0, 0, 0, 1};"
                                       "Mesh.MeshSizeMax = 0.2;\n")));
   expect_same(plane.topology(), by_definition<2>(plane.n_vertices(), plane.cells()));
   const auto solid = std::get<mesh::Mesh<3>>(
-      mesh::read_gmsh(directory.write("ball.geo",
+      mesh::read_mesh(directory.write("ball.geo",
                                       "SetFactory(\"OpenCASCADE\"); Sphere(1) = {0, 0, 0, 1};"
                                       "Mesh.MeshSizeMax = 0.4;\n")));
   expect_same(solid.topology(), by_definition<3>(solid.n_vertices(), solid.cells()));

@@ -13,7 +13,7 @@ namespace tribound::io
 {
 
 /// Writes the mesh as a .msh (version 2.2, ASCII), with regions and boundaries as named physical groups,
-/// except the boundaries `left_out`. read_gmsh() returns the same vertices, cells and groups. All ranks call
+/// except the boundaries `left_out`. read_mesh() returns the same vertices, cells and groups. All ranks call
 /// it together. The first one writes the cells received from the others in batches, so no rank needs memory
 /// of the size of the mesh. Throws WriteError.
 template <int dim>

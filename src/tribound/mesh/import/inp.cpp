@@ -105,13 +105,19 @@ void InpAssembler::add_block(std::size_t i, const InpElements& elements)
   const bool may_be_facet = dim_ == 3
                                 ? elements.family == InpFamily::plane || elements.family == InpFamily::shell
                                 : elements.family == InpFamily::truss;
+  if (!is_cell && !may_be_facet && ignores_elements_)
+  {
+    for (std::size_t e = 0; e < elements.numbers.size(); ++e)
+      ignore(elements_.emplace_back(Element{-1, false, &elements, elements.numbers[e], elements.places[e]}));
+    return;
+  }
   if (!is_cell && !may_be_facet)
     lines_.fail(
         elements.places[0],
         fmt::format("element {} ({}) is a {}", elements.numbers[0], elements.type_name,
                     elements.family == InpFamily::truss ? "truss" : "shell"),
-        "only solids, or plane elements alone, are read; Gmsh writes curves as trusses: save physical "
-        "groups of surfaces and volumes alone");
+        "only solids, or plane elements alone, are read: ignore_elements = true leaves the others out; Gmsh "
+        "writes curves as trusses: save physical groups of surfaces and volumes alone");
   ElementBlock block{elements.type, {}, elements.numbers};
   block.nodes.reserve(elements.nodes.size());
   const auto stride = static_cast<std::size_t>(elements.type.n_nodes);
@@ -139,9 +145,52 @@ void InpAssembler::add_block(std::size_t i, const InpElements& elements)
   mesh_.cells.push_back(std::move(block));
 }
 
-ImportedMesh read_inp(const std::filesystem::path& file)
+void InpAssembler::ignore(Element& element)
 {
-  return InpAssembler(file).assemble();
+  element.number = -1;
+  const auto [entry, is_new] = ignored_.try_emplace(element.elements->type_name);
+  if (is_new) entry->second.first = element.label;
+  ++entry->second.n;
+}
+
+std::string InpAssembler::ignored() const
+{
+  std::string text;
+  for (const auto& [type, which] : ignored_)
+    text += fmt::format("{}{} of type {} (such as {})", text.empty() ? "elements left out: " : ", ", which.n,
+                        type, which.first);
+  return text;
+}
+
+ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
+                      std::vector<std::string>& notes)
+{
+  InpAssembler assembler(file, ignores_elements);
+  ImportedMesh mesh = assembler.assemble();
+  if (const std::string ignored = assembler.ignored(); !ignored.empty())
+    notes.push_back(fmt::format("{}: {}", file.string(), ignored));
+  return mesh;
+}
+
+std::vector<std::filesystem::path> files_of_inp(const std::filesystem::path& file)
+{
+  InpLines lines(file);
+  try
+  {
+    while (lines.next())
+    {
+      if (!lines.is_keyword()) continue;
+      const InpKeyword keyword = lines.keyword();
+      const bool may_include =
+          keyword.name == "INCLUDE" || keyword.name == "NODE" || keyword.name == "ELEMENT";
+      const auto input = keyword.find("INPUT");
+      if (may_include && input) lines.include(*input);
+    }
+  }
+  catch (const InputError&)  // a file is not there
+  {
+  }
+  return lines.files();
 }
 
 }  // namespace tribound::mesh

@@ -4,6 +4,8 @@
 /// Meshes from decks for Abaqus, CalculiX and PrePoMax.
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tribound/mesh/import/imported_mesh.h"
 
@@ -18,7 +20,12 @@ namespace tribound::mesh
 /// that are faces of solids, sets of trusses that are edges in 2D, and node sets (node_sets.h).
 ///
 /// Throws InputError with file and line, or with the element: what is not read, missing, or given twice,
-/// shells and beams, regions that are not clear.
-[[nodiscard]] ImportedMesh read_inp(const std::filesystem::path& file);
+/// shells and beams, regions that are not clear. With `ignores_elements` shells, beams, springs and the like
+/// are left out, and `notes` lists them.
+[[nodiscard]] ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
+                                    std::vector<std::string>& notes);
+
+/// The deck and all files that it includes, in the order in which they are read; as far as they can be read.
+[[nodiscard]] std::vector<std::filesystem::path> files_of_inp(const std::filesystem::path& file);
 
 }  // namespace tribound::mesh

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -74,15 +75,18 @@ struct ResolvedSet
 class InpAssembler
 {
  public:
-  explicit InpAssembler(const std::filesystem::path& file) : lines_(file), model_(parse_inp(lines_))
+  InpAssembler(const std::filesystem::path& file, bool ignores_elements)
+      : lines_(file), ignores_elements_(ignores_elements), model_(parse_inp(lines_, ignores_elements))
   {
     mesh_.source = {.file = file.string()};
   }
 
   ImportedMesh assemble();
+  /// What has been left out, in words; empty: nothing.
+  [[nodiscard]] std::string ignored() const;
 
  private:
-  /// What an element has become: a cell or a possible facet, by its number among those.
+  /// What an element has become: a cell or a possible facet, by its number among those; -1: nothing.
   struct Element
   {
     Index number;
@@ -117,7 +121,8 @@ class InpAssembler
   void mark_sets(std::size_t i);
   void add_surface(std::size_t i, const InpSurface& surface);
   [[nodiscard]] FaceNodes face_of(const Element& element, int face, const InpPlace& place) const;
-  void check_facets() const;
+  void ignore(Element& element);
+  void check_facets();
   void add_facets();
   void add_regions();
   [[nodiscard]] std::vector<const ResolvedSet*> sets_where(bool (*wanted)(const ResolvedSet&)) const;
@@ -127,6 +132,7 @@ class InpAssembler
   [[noreturn]] void throw_regions_unclear() const;
 
   InpLines lines_;
+  bool ignores_elements_;
   InpModel model_;
   ImportedMesh mesh_{};
   int dim_ = 3;
@@ -136,6 +142,12 @@ class InpAssembler
   std::vector<Index> first_cell_{};     ///< of each block of cells
   Index n_cells_ = 0;
   std::size_t n_members_ = 0;  ///< of all sets so far
+  struct Ignored
+  {
+    std::size_t n = 0;
+    std::int64_t first = 0;
+  };
+  std::map<std::string, Ignored> ignored_{};  ///< elements by their type
 };
 
 }  // namespace tribound::mesh

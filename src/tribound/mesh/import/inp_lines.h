@@ -57,6 +57,8 @@ class InpLines
   void include(const std::string& name);
 
   [[nodiscard]] InpPlace place() const { return place_; }
+  /// All files so far.
+  [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
   [[nodiscard]] Where where(const InpPlace& place) const;
   [[noreturn]] void fail(const InpPlace& place, const std::string& problem,
                          const std::string& hint = {}) const

@@ -16,13 +16,14 @@
 namespace tribound::mesh
 {
 
-/// What the elements of a type stand for: C3D*; CPS*, CPE*; S*, M3D*; T2D*, T3D*.
+/// What the elements of a type stand for: C3D*; CPS*, CPE*; S*, M3D*; T2D*, T3D*; none of these.
 enum class InpFamily : char
 {
   solid,
   plane,
   shell,
-  truss
+  truss,
+  other  ///< only its number is read
 };
 
 struct InpElements
@@ -129,7 +130,7 @@ struct InpModel
 [[nodiscard]] bool find_type(std::string_view name, InpElements& elements);
 
 /// Reads all keywords that say something about the mesh and passes over the others. Throws InputError with
-/// file and line.
-[[nodiscard]] InpModel parse_inp(InpLines& lines);
+/// file and line, also for elements of an unknown type unless they are to be ignored.
+[[nodiscard]] InpModel parse_inp(InpLines& lines, bool ignores_elements);
 
 }  // namespace tribound::mesh

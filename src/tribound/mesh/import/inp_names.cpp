@@ -62,10 +62,12 @@ void InpAssembler::mark_sets(std::size_t i)
     ResolvedSet& set = instances_[i].element_sets[section.set];
     if (section.keyword == "SOLID SECTION")
       set.is_section = true;
-    else if (!set.members.empty())
-      lines_.fail(section.place,
-                  fmt::format("element {} is in a *{}", elements_[set.members[0]].label, section.keyword),
-                  "shells, membranes and beams have no counterpart: model them by solids, or leave them out");
+    else if (!set.members.empty() && !ignores_elements_)
+      lines_.fail(
+          section.place,
+          fmt::format("element {} is in a *{}", elements_[set.members[0]].label, section.keyword),
+          "shells, membranes and beams have no counterpart: model them by solids, or leave them out by "
+          "ignore_elements = true");
   }
   for (const InpSurface& surface : part_of(i).surfaces)
     for (const InpSurfacePart& part : surface.parts)
@@ -109,8 +111,10 @@ void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
     places.clear();
     add_members(part.elements, i, part.place, places, &Instance::element_sets, &Instance::elements);
     for (const Index e : places)
-      append(facets.facets, face_of(elements_[e], part.face, part.place), elements_[e].label);
+      if (elements_[e].is_cell || !ignores_elements_)
+        append(facets.facets, face_of(elements_[e], part.face, part.place), elements_[e].label);
   }
+  if (facets.facets.empty() && !places.empty()) return;  // all of elements that are ignored
   if (facets.facets.empty() && nodes.nodes.empty())
     lines_.fail(surface.place, fmt::format("surface \"{}\" is empty", surface.name));
   if (surface.is_of_nodes)
@@ -123,21 +127,34 @@ void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
 }
 
 /// Elements of lower dimension must be facets of cells: Gmsh, unical and Salome write surfaces so.
-void InpAssembler::check_facets() const
+void InpAssembler::check_facets()
 {
   if (facets_.empty()) return;
   const CellFaces faces = faces_beside(mesh_.cells, mesh_.nodes.size(), facets_);
-  for (const Element& element : elements_)
+  Index n_kept = 0;
+  for (Element& element : elements_)
   {
-    if (element.is_cell) continue;
+    if (element.is_cell || element.number < 0) continue;
     const ElementBlock& facet = facets_[element.number];
-    if (faces.contains(key_of(facet.element(0).first(table_of(facet.type.shape).n_corners)))) continue;
+    if (faces.contains(key_of(facet.element(0).first(table_of(facet.type.shape).n_corners))))
+    {
+      if (n_kept < element.number) facets_[n_kept] = std::move(facets_[element.number]);
+      element.number = n_kept++;
+      continue;
+    }
+    if (ignores_elements_)
+    {
+      ignore(element);
+      continue;
+    }
     lines_.fail(element.place,
                 fmt::format("element {} ({}) is a {}: it is not {} of a cell", element.label,
                             element.elements->type_name, dim_ == 3 ? "shell" : "truss",
                             dim_ == 3 ? "a face" : "an edge"),
-                "only solids, or plane elements alone, are read: model it by solids, or leave it out");
+                "only solids, or plane elements alone, are read: model it by solids, or leave it out by "
+                "ignore_elements = true");
   }
+  facets_.resize(n_kept);
 }
 
 std::vector<const ResolvedSet*> InpAssembler::sets_where(bool (*wanted)(const ResolvedSet&)) const
@@ -157,7 +174,7 @@ std::vector<CellSet> InpAssembler::members_of(const std::vector<const ResolvedSe
   {
     CellSet members{set->name};
     for (const Index e : set->members)
-      if (elements_[e].is_cell == cells) members.cells.push_back(elements_[e].number);
+      if (elements_[e].is_cell == cells && elements_[e].number >= 0) members.cells.push_back(elements_[e].number);
     if (!members.cells.empty()) result.push_back(std::move(members));
   }
   return result;

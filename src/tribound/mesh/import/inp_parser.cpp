@@ -59,6 +59,7 @@ InpModel InpParser::parse()
 
 bool InpParser::next_data()
 {
+  if (has_line_) return false;
   while (lines_.next())
   {
     if (!lines_.is_keyword()) return true;
@@ -146,11 +147,20 @@ void InpParser::read_elements(const InpKeyword& keyword)
     elements.set = part().element_sets.add(checked_name(*set, keyword.place), keyword.place);
   while (next_data())
   {
+    if (!is_read && ignores_elements_)
+    {
+      elements.family = InpFamily::other;
+      read_number(elements);
+      continue;
+    }
     if (!is_read)
       lines_.fail(
           lines_.place(),
           fmt::format("element {} is of type {}, which is not read", lines_.fields()[0].substr(0, 80), type),
-          fmt::format("{}; springs, beams, rigid and axisymmetric elements have no counterpart", to_split));
+          fmt::format(
+              "{}; springs, beams, rigid and axisymmetric elements have no counterpart: ignore_elements = "
+              "true leaves them out",
+              to_split));
     read_element(elements);
   }
   if (!elements.numbers.empty()) part().elements.push_back(std::move(elements));
@@ -176,14 +186,30 @@ void InpParser::read_element(InpElements& elements)
     if (!next_data()) fail(fmt::format("has only {} of its {} nodes", n, n_nodes));
     fields = lines_.fields();
   }
+  add_number(elements, element, place);
+}
+
+/// The number of an element of unknown type; a line that ends with a comma goes on in the next one.
+void InpParser::read_number(InpElements& elements)
+{
+  const InpPlace place = lines_.place();
+  const std::int64_t element = integer(lines_.fields()[0]);
+  while (lines_.text().ends_with(',') && next_data())
+  {
+  }
+  add_number(elements, element, place);
+}
+
+void InpParser::add_number(InpElements& elements, std::int64_t element, const InpPlace& place)
+{
   elements.numbers.push_back(element);
   elements.places.push_back(place);
   if (elements.set >= 0) part().element_sets.all[elements.set].add({element, element});
 }
 
-InpModel parse_inp(InpLines& lines)
+InpModel parse_inp(InpLines& lines, bool ignores_elements)
 {
-  return InpParser(lines).parse();
+  return InpParser(lines, ignores_elements).parse();
 }
 
 }  // namespace tribound::mesh

@@ -16,7 +16,7 @@ namespace tribound::mesh
 class InpParser
 {
  public:
-  explicit InpParser(InpLines& lines) : lines_(lines) {}
+  InpParser(InpLines& lines, bool ignores_elements) : lines_(lines), ignores_elements_(ignores_elements) {}
 
   InpModel parse();
 
@@ -31,6 +31,8 @@ class InpParser
   void read_nodes(const InpKeyword& keyword);
   void read_elements(const InpKeyword& keyword);
   void read_element(InpElements& elements);
+  void read_number(InpElements& elements);
+  void add_number(InpElements& elements, std::int64_t element, const InpPlace& place);
   void read_element_set(const InpKeyword& keyword) { read_set(keyword, part().element_sets, "ELSET"); }
   void read_node_set(const InpKeyword& keyword) { read_set(keyword, part().node_sets, "NSET"); }
   void read_set(const InpKeyword& keyword, InpSets& sets, const std::string& parameter);
@@ -52,6 +54,7 @@ class InpParser
   [[nodiscard]] double number(std::string_view field) const;
 
   InpLines& lines_;
+  bool ignores_elements_;
   InpModel model_{};
   int part_ = 0;
   bool has_line_ = false;  ///< the present line has not been dealt with

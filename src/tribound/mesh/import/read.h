@@ -1,0 +1,34 @@
+#pragma once
+
+/// @file read.h
+/// Meshes from files of all formats: one way from the file to the simplicial mesh.
+
+#include <atomic>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/imported_mesh.h"
+#include "tribound/mesh/import/simplices.h"
+#include "tribound/mesh/mesh.h"
+#include "tribound/mesh/source.h"
+
+namespace tribound::mesh
+{
+
+using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
+
+/// Reads the mesh of a file as it stands there, by the suffix of its name, with what the options ask for; or
+/// meshes a geometry. `notes` gets what was left out: "part.msh: ...". Throws InputError, at source.where for
+/// a file that is not there, not read, or has no use for an option; SolveError once `stop` is true.
+[[nodiscard]] ImportedMesh read_imported(const MeshFile& source, const std::atomic<bool>* stop,
+                                         double patience, std::vector<std::string>& notes);
+
+/// The mesh that a case asks for: read, made simplicial, cut open, verified. An .stl, whose volume has to be
+/// filled first, is refused.
+[[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams = {},
+                                const std::atomic<bool>* stop = nullptr,
+                                std::vector<std::string>* notes = nullptr);
+
+}  // namespace tribound::mesh
