@@ -16,7 +16,7 @@
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_load.h"
 #include "tribound/mesh/gmsh_session.h"
-#include "tribound/mesh/mesh_bytes.h"
+#include "tribound/mesh/import/imported_bytes.h"
 
 namespace tribound::mesh
 {
@@ -24,112 +24,59 @@ namespace tribound::mesh
 namespace
 {
 
-/// The first number of a result.
-enum Answer : std::size_t
-{
-  refused = 0,  ///< an InputError follows
-  no_memory = 1,
-  complete = 2  ///< notes and a mesh follow
-};
+constexpr double share_of_machine = 0.9;
 
-std::string refusal(const InputError& error)
+/// A limit of reading_limits(), such as "0.256 GB", is reached, and what that means.
+InputError beyond_limits(const std::filesystem::path& file, const std::string& limit)
 {
-  ByteWriter bytes;
-  bytes.put(refused);
-  for (const int number : {error.where().line, error.where().column})
-    bytes.put(static_cast<std::size_t>(number));
-  for (const std::string& text : {error.where().file, error.where().key, error.problem(), error.hint()})
-    bytes.put(std::string_view(text));
-  return bytes.take();
+  std::error_code unknown;
+  return {{.file = file.string()},
+          fmt::format("Gmsh needs more than {}, too much for a sound file of {:.3g} MB", limit,
+                      1e-6 * static_cast<double>(std::filesystem::file_size(file, unknown))),
+          "the file is damaged: a number of entities, nodes or elements in it is wrong; save the mesh again "
+          "with Gmsh"};
+}
+
+InputError no_memory(const std::filesystem::path& file)
+{
+  const double allowed = reading_limits(file).memory;
+  if (allowed < share_of_machine * machine_memory())
+    return beyond_limits(file, fmt::format("{:.3g} GB of memory", 1e-9 * allowed));
+  return {{.file = file.string()},
+          fmt::format("Gmsh needs more than the {:.3g} GB of this machine for it", 1e-9 * machine_memory()),
+          "a coarser mesh; is a mesh size or a number of nodes absurd?"};
 }
 
 /// Runs in the child: the mesh, or why there is none.
 std::string load_as_bytes(const MeshFile& source)
 {
+  const auto failure = [&](std::string_view what)
+  {
+    return bytes_of(
+        InputError({.file = source.path.string()}, fmt::format("Gmsh cannot read the file: {}", what)));
+  };
   try
   {
     std::vector<std::string> notes;
     const ImportedMesh mesh = load_gmsh(source, notes);
-    ByteWriter bytes;
-    bytes.put(complete);
-    bytes.put(notes);
-    put(bytes, mesh);
-    return bytes.take();
+    return bytes_of(mesh, notes);
   }
   catch (const InputError& error)
   {
-    return refusal(error);
+    return bytes_of(error);
   }
   catch (const std::bad_alloc&)
   {
-    ByteWriter answer;
-    answer.put(no_memory);
-    return answer.take();
+    return bytes_of(no_memory(source.path));
   }
   catch (const std::exception& error)
   {
-    return refusal(
-        {{.file = source.path.string()}, fmt::format("Gmsh cannot read the file: {}", error.what())});
+    return failure(error.what());
   }
   catch (...)  // Gmsh up to 4.8 throws strings, and integers
   {
-    return refusal({{.file = source.path.string()}, "Gmsh cannot read the file: no reason given"});
+    return failure("no reason given");
   }
-}
-
-[[noreturn]] void throw_refusal(ByteReader& bytes)
-{
-  Where where;
-  for (int* number : {&where.line, &where.column})
-  {
-    std::size_t value = 0;
-    bytes.get(value);
-    *number = static_cast<int>(value);
-  }
-  std::string problem;
-  std::string hint;
-  for (std::string* text : {&where.file, &where.key, &problem, &hint}) bytes.get(*text);
-  throw InputError(where, problem, hint);
-}
-
-constexpr double share_of_machine = 0.9;
-
-/// Reports that a limit of reading_limits(), such as "0.256 GB", is reached, and what that means.
-[[noreturn]] void throw_beyond_limits(const std::filesystem::path& file, const std::string& limit)
-{
-  std::error_code unknown;
-  throw InputError({.file = file.string()},
-                   fmt::format("Gmsh needs more than {}, too much for a sound file of {:.3g} MB", limit,
-                               1e-6 * static_cast<double>(std::filesystem::file_size(file, unknown))),
-                   "the file is damaged: a number of entities, nodes or elements in it is wrong; save the "
-                   "mesh again with Gmsh");
-}
-
-[[noreturn]] void throw_no_memory(const std::filesystem::path& file)
-{
-  const double allowed = reading_limits(file).memory;
-  if (allowed < share_of_machine * machine_memory())
-    throw_beyond_limits(file, fmt::format("{:.3g} GB of memory", 1e-9 * allowed));
-  throw InputError(
-      {.file = file.string()},
-      fmt::format("Gmsh needs more than the {:.3g} GB of this machine for it", 1e-9 * machine_memory()),
-      "a coarser mesh; is a mesh size or a number of nodes absurd?");
-}
-
-ImportedMesh mesh_of(const std::filesystem::path& file, std::string_view result,
-                     std::vector<std::string>& notes)
-{
-  ByteReader bytes(result);
-  std::size_t answer = refused;
-  bytes.get(answer);
-  if (answer == refused) throw_refusal(bytes);
-  if (answer == no_memory) throw_no_memory(file);
-  std::vector<std::string> its_notes;
-  bytes.get(its_notes);
-  notes.insert(notes.end(), its_notes.begin(), its_notes.end());
-  ImportedMesh mesh{.source = {.file = file.string()}};
-  get(bytes, mesh);
-  return mesh;
 }
 
 /// The last errors that Gmsh has printed ("Error   : text"), at most three.
@@ -190,9 +137,9 @@ ImportedMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, do
     case ApartEnd::crashed:
       throw_crashed(file, outcome);
     case ApartEnd::out_of_time:
-      throw_beyond_limits(file, fmt::format("{:.3g} s", reading_limits(file).seconds));
+      throw beyond_limits(file, fmt::format("{:.3g} s", reading_limits(file).seconds));
     default:
-      return mesh_of(file, outcome.result, notes);
+      return mesh_from(outcome.result, {.file = file.string()}, notes);
   }
 }
 

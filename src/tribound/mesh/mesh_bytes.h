@@ -1,14 +1,13 @@
 #pragma once
 
 /// @file mesh_bytes.h
-/// Imported meshes and errors as a string of bytes, to be passed between processes of the same program.
+/// Values as a string of bytes, to be passed between processes of the same program.
 
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
-
-#include "tribound/mesh/import/imported_mesh.h"
 
 namespace tribound::mesh
 {
@@ -83,75 +82,5 @@ class ByteReader
 
   std::string_view bytes_;
 };
-
-inline void put(ByteWriter& bytes, const std::vector<ElementBlock>& blocks)
-{
-  bytes.put(blocks.size());
-  for (const ElementBlock& block : blocks)
-  {
-    bytes.put(static_cast<std::size_t>(block.type.shape));
-    bytes.put(static_cast<std::size_t>(block.type.n_nodes));
-    bytes.put(block.nodes);
-    bytes.put(block.numbers);
-  }
-}
-
-/// All that Gmsh's reader fills in; the source is left to the caller.
-inline void put(ByteWriter& bytes, const ImportedMesh& mesh)
-{
-  bytes.put(mesh.nodes);
-  bytes.put(mesh.node_numbers);
-  put(bytes, mesh.cells);
-  bytes.put(mesh.cell_sets.size());
-  for (const CellSet& set : mesh.cell_sets)
-  {
-    bytes.put(std::string_view(set.name));
-    bytes.put(set.cells);
-  }
-  bytes.put(mesh.facet_sets.size());
-  for (const FacetSet& set : mesh.facet_sets)
-  {
-    bytes.put(std::string_view(set.name));
-    put(bytes, set.facets);
-  }
-}
-
-inline void get(ByteReader& bytes, std::vector<ElementBlock>& blocks)
-{
-  std::size_t n = 0;
-  bytes.get(n);
-  blocks.resize(n);
-  for (ElementBlock& block : blocks)
-  {
-    bytes.get(n);
-    block.type.shape = static_cast<Shape>(n);
-    bytes.get(n);
-    block.type.n_nodes = static_cast<int>(n);
-    bytes.get(block.nodes);
-    bytes.get(block.numbers);
-  }
-}
-
-inline void get(ByteReader& bytes, ImportedMesh& mesh)
-{
-  std::size_t n = 0;
-  bytes.get(mesh.nodes);
-  bytes.get(mesh.node_numbers);
-  get(bytes, mesh.cells);
-  bytes.get(n);
-  mesh.cell_sets.resize(n);
-  for (CellSet& set : mesh.cell_sets)
-  {
-    bytes.get(set.name);
-    bytes.get(set.cells);
-  }
-  bytes.get(n);
-  mesh.facet_sets.resize(n);
-  for (FacetSet& set : mesh.facet_sets)
-  {
-    bytes.get(set.name);
-    get(bytes, set.facets);
-  }
-}
 
 }  // namespace tribound::mesh

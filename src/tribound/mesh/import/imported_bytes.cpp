@@ -1,7 +1,6 @@
 #include "tribound/mesh/import/imported_bytes.h"
 
 #include <cstddef>
-#include <vector>
 
 #include "tribound/mesh/mesh_bytes.h"
 
@@ -73,10 +72,11 @@ void get_sets(ByteReader& bytes, std::vector<Set>& sets, const Get& get_members)
 
 }  // namespace
 
-std::string bytes_of(const ImportedMesh& mesh)
+std::string bytes_of(const ImportedMesh& mesh, const std::vector<std::string>& notes)
 {
   ByteWriter bytes;
   bytes.put(is_mesh);
+  bytes.put(notes);
   bytes.put(mesh.nodes);
   bytes.put(mesh.node_numbers);
   put(bytes, mesh.cells);
@@ -102,7 +102,7 @@ std::string bytes_of(const InputError& error)
   return bytes.take();
 }
 
-ImportedMesh mesh_from(std::string_view result)
+ImportedMesh mesh_from(std::string_view result, const Where& source, std::vector<std::string>& notes)
 {
   ByteReader bytes(result);
   std::size_t number = is_refused;
@@ -120,7 +120,10 @@ ImportedMesh mesh_from(std::string_view result)
     for (std::string* text : {&where.file, &where.key, &problem, &hint}) bytes.get(*text);
     throw InputError(where, problem, hint);
   }
-  ImportedMesh mesh;
+  std::vector<std::string> its_notes;
+  bytes.get(its_notes);
+  notes.insert(notes.end(), its_notes.begin(), its_notes.end());
+  ImportedMesh mesh{.source = source};
   bytes.get(mesh.nodes);
   bytes.get(mesh.node_numbers);
   get(bytes, mesh.cells);

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tribound/base/error.h"
 #include "tribound/mesh/import/imported_mesh.h"
@@ -12,11 +13,12 @@
 namespace tribound::mesh
 {
 
-/// All of a mesh but its source.
-[[nodiscard]] std::string bytes_of(const ImportedMesh& mesh);
+/// All of a mesh but its source, and what is to be said of it.
+[[nodiscard]] std::string bytes_of(const ImportedMesh& mesh, const std::vector<std::string>& notes = {});
 [[nodiscard]] std::string bytes_of(const InputError& error);
 
-/// The mesh again; throws the InputError if it is one.
-[[nodiscard]] ImportedMesh mesh_from(std::string_view bytes);
+/// The mesh again, with `source`; the notes are appended. Throws the InputError if it is one.
+[[nodiscard]] ImportedMesh mesh_from(std::string_view bytes, const Where& source,
+                                     std::vector<std::string>& notes);
 
 }  // namespace tribound::mesh

@@ -174,7 +174,8 @@ std::vector<CellSet> InpAssembler::members_of(const std::vector<const ResolvedSe
   {
     CellSet members{set->name};
     for (const Index e : set->members)
-      if (elements_[e].is_cell == cells && elements_[e].number >= 0) members.cells.push_back(elements_[e].number);
+      if (elements_[e].is_cell == cells && elements_[e].number >= 0)
+        members.cells.push_back(elements_[e].number);
     if (!members.cells.empty()) result.push_back(std::move(members));
   }
   return result;

@@ -42,9 +42,8 @@ ImportedMesh read_apart(const std::filesystem::path& file, const std::string& li
   if (outcome.end == ApartEnd::out_of_time || outcome.end == ApartEnd::silent)
     throw failure("it takes too long for a sound file of this size");
   if (outcome.end != ApartEnd::complete) throw failure("it " + describe_end(outcome.status));
-  ImportedMesh mesh = mesh_from(outcome.result);
-  mesh.source = where;
-  return mesh;
+  std::vector<std::string> none;
+  return mesh_from(outcome.result, where, none);
 }
 
 }  // namespace tribound::mesh
