@@ -27,11 +27,13 @@ using namespace tribound::app;
 
 struct Arguments : SweepRequest
 {
-  int refinements = 2;          ///< of verify
-  bool json = false;            ///< of check
-  std::string start = "block";  ///< of init: the case to start from
-  std::string directory;        ///< of init
-  std::string restart;          ///< of run: an output directory, or a checkpoint there
+  int refinements = 2;                ///< of verify
+  bool json = false;                  ///< of check
+  std::string start = "block";        ///< of init: the case to start from
+  std::string directory;              ///< of init
+  std::string deck;                   ///< of import
+  std::vector<std::string> accepted;  ///< of import
+  std::string restart;                ///< of run: an output directory, or a checkpoint there
   MeshRequest mesh;
 };
 
@@ -146,7 +148,17 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   init->add_option("name", arguments.start,
                    fmt::format("The case to start from: {}", fmt::join(template_names(), ", ")))
       ->capture_default_str();
-  init->add_option("--directory", arguments.directory, "Where to write it; default: here");
+  CLI::App* import = app.add_subcommand("import", "Make a case of a deck for CalculiX or Abaqus");
+  import->group(program_commands);
+  import->add_option("deck", arguments.deck, "The deck (.inp)")->required();
+  import
+      ->add_option("--accept", arguments.accepted,
+                   "A keyword that may be dropped although the answer depends on it; may be repeated")
+      ->type_name("KEYWORD")
+      ->allow_extra_args(false);
+  import->add_flag("-q,--quiet", arguments.quiet, "Print nothing, and do not check the case");
+  for (CLI::App* command : {init, import})
+    command->add_option("--directory", arguments.directory, "Where to write; default: here");
   check->add_flag("--json", arguments.json, "Print what was found as JSON");
   verify
       ->add_option("--refinements", arguments.refinements,
@@ -186,6 +198,8 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
   if (command == "mesh") write_mesh(arguments.mesh);
+  if (command == "import")
+    import_deck({arguments.deck, arguments.directory, arguments.accepted, arguments.quiet});
   if (command == "init") init(arguments.start, arguments.directory);
   if (command == "info") info(true);
   if (command == "schema") print(case_schema());

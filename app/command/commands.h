@@ -108,6 +108,19 @@ struct MeshRequest
 /// to stderr. Throws InputError and WriteError.
 void write_mesh(const MeshRequest& request);
 
+struct ImportRequest
+{
+  std::string deck;
+  std::string directory{};              ///< where to write; empty: here
+  std::vector<std::string> accepted{};  ///< keywords that may be dropped although the answer depends on them
+  bool quiet = false;
+};
+
+/// `tribound import`: writes the case and the mesh that a deck stands for, NAME.toml and NAME.msh for
+/// NAME.inp, and checks them; prints what the case does otherwise. Throws InputError where one of the files
+/// exists, and see case/deck/import_deck.h.
+void import_deck(const ImportRequest& request);
+
 /// The cases available to `init`, in the order of app/templates.
 [[nodiscard]] std::vector<std::string> template_names();
 

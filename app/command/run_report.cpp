@@ -49,7 +49,7 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
   record_.case_file = effective_file_name(config);
   record_.tolerance = config.adapt.tolerance;
   record_.setup = seconds_since(begin);
-  record_.statements = io::run_statements(first, config.method);
+  record_.statements = io::run_statements(first, record_.facts, config.method);
   if (restart)
   {
     record_.earlier = restart->facts.earlier;

@@ -175,6 +175,7 @@ Config read_document(const Node& document, std::string file)
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
   root.read("title", config.title);
+  root.read("not_covered", config.not_covered);
   root.read("degree", config.method.degree);
   if (const Node* node = root.find("units")) config.units = read_units(*node);
   config.mesh = read_mesh_source(root.require("mesh"), case_directory);
@@ -218,7 +219,9 @@ const Table& case_table()
                            {"quantity", tables(quantity_table())},
                            {"probe", keys_of(probes_table())},
                            {"section", keys_of(sections_table())},
-                           {"history", keys_of(history_table())}} +
+                           {"history", keys_of(history_table())},
+                           {"not_covered", array_of(text("what the case leaves out", 1), 0,
+                                                    "not_covered = [\"creep of the concrete\"]")}} +
           method_keys(),
       .refused = point_loads()};
   return table;

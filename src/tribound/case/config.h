@@ -173,6 +173,7 @@ struct Config
 {
   std::string file;  ///< the case file, for messages
   std::string title;
+  std::vector<std::string> not_covered;  ///< added to that of the certificate
   problem::Units units;  ///< of [units]
   mesh::MeshSource mesh;
   std::vector<MaterialConfig> materials;

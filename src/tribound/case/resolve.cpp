@@ -341,7 +341,8 @@ io::CaseFacts case_facts(const Config& config, int dimension)
                       .stress = config.method.stress,
                       .friction = friction_name(config),
                       .gamma0 = config.method.gamma_0(),
-                      .units = config.units};
+                      .units = config.units,
+                      .not_covered = config.not_covered};
   for (const QuantityConfig& quantity : config.quantities)
     facts.quantity_units.emplace_back(quantity.name, label(quantity.kind, config.units, dimension));
   return facts;

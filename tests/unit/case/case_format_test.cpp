@@ -183,6 +183,12 @@ void try_out(const Row& row)
     expect_refused(row, "[]");
     expect_refused(row, "1");
   }
+  else if (row.type == "array of texts")
+  {
+    expect_accepted(row, "[\"some words\", \"others\"]");
+    expect_refused(row, "[1]");
+    expect_refused(row, "\"words\"");
+  }
   else if (row.type == "array of data")
   {
     expect_accepted(row, "[0, \"x\", -1]");

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <random>
 
+#include "support/damaged.h"
 #include "tribound/mesh/quadratic_facets.h"
 #include "unit/mesh/imported_testing.h"
 #include "unit/mesh/mesh_testing.h"
@@ -500,8 +501,6 @@ TEST(Inp, DamagedDecksEndInAMessage)
 {
   const Directory directory;
   std::mt19937 random(17);
-  const auto below = [&](std::size_t n)
-  { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   const std::string sound =
       "*PART,NAME=p\n" + two_cubes +
       "*NSET,NSET=low,GENERATE\n1,4,1\n*ELSET,ELSET=a\n1\n*ELSET,ELSET=b\n2,\n*SURFACE,NAME=s\na,S1\n*END "
@@ -513,29 +512,7 @@ TEST(Inp, DamagedDecksEndInAMessage)
   {
     std::string text = sound;
     if (k % 2 == 0) text.erase(text.find("*INCLUDE"), 24);
-    for (std::size_t n = below(4); n > 0; --n)
-    {
-      const std::size_t at = below(text.size());
-      switch (below(5))
-      {
-        case 0:
-          text[at] = static_cast<char>(below(256));
-          break;
-        case 1:
-          text.insert(at, text.substr(below(text.size()), below(40)));
-          break;
-        case 2:
-          text.erase(at, 1 + below(20));
-          break;
-        case 3:
-          text.insert(at, std::to_string(random()) + std::to_string(random()));
-          break;
-        default:
-          text.resize(at + 1);
-      }
-      if (text.empty()) text = "*";
-    }
-    const mesh::MeshFile file = directory.write("deck.inp", text);
+    const mesh::MeshFile file = directory.write("deck.inp", test::damaged(text, random));
     try
     {
       (void)mesh::read_mesh(file);

@@ -35,6 +35,8 @@ struct CaseFacts
   problem::Units units{};
   /// The units of the [[quantity]] tables, by name; empty for pure numbers, and where no units are named.
   std::vector<std::pair<std::string, std::string>> quantity_units{};
+  /// What the case leaves out of the problem that it stands for, in the words of its author.
+  std::vector<std::string> not_covered{};
 
   /// " MPa", to be appended to a number; empty where no units are named.
   [[nodiscard]] std::string behind(problem::UnitOf what) const { return units.behind(what, dimension); }

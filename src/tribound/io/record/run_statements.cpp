@@ -30,10 +30,24 @@ std::string describe_solver(std::span<const adapt::CertifiedStep> steps)
          (fell_back ? ", as GMRES with multigrid failed on this mesh" : "");
 }
 
+namespace
+{
+
+/// What the author of the case leaves out comes first.
+void add_not_covered(certify::Statements& statements, const CaseFacts& facts)
+{
+  statements.not_covered.insert(statements.not_covered.begin(), facts.not_covered.begin(),
+                                facts.not_covered.end());
+}
+
+}  // namespace
+
 template <int dim>
-certify::Statements run_statements(const adapt::Discretisation<dim>& first, const adapt::Method& method)
+certify::Statements run_statements(const adapt::Discretisation<dim>& first, const CaseFacts& facts,
+                                   const adapt::Method& method)
 {
   certify::Statements statements = certify::statements(first.form, method.contact_rule);
+  add_not_covered(statements, facts);
   statements.assumptions.emplace_back("linear_solver", describe_solver(algebra::choose_method(
                                                            method.solver, dim, first.space.n_global_dofs())));
   return statements;
@@ -46,6 +60,7 @@ certify::Statements run_statements(const adapt::LevelView<dim>& view, const Leve
   const adapt::CertifiedLevel<dim>& level = view.level;
   certify::Statements statements =
       certify::statements(view.discrete.form, method.contact_rule, level.friedrichs);
+  add_not_covered(statements, facts);
   if (!record.load_step && view.discrete.form.problem().uses_time())
     statements.assumptions.emplace_back("load_factor", "t = 1 in all formulas, without [history]");
   if (std::string energy = words_of_guarantee(record, facts); !energy.empty())
@@ -68,8 +83,8 @@ certify::Statements run_statements(const adapt::LevelView<dim>& view, const Leve
   return statements;
 }
 
-template certify::Statements run_statements(const adapt::Discretisation<2>&, const adapt::Method&);
-template certify::Statements run_statements(const adapt::Discretisation<3>&, const adapt::Method&);
+template certify::Statements run_statements(const adapt::Discretisation<2>&, const CaseFacts&, const adapt::Method&);
+template certify::Statements run_statements(const adapt::Discretisation<3>&, const CaseFacts&, const adapt::Method&);
 template certify::Statements run_statements(const adapt::LevelView<2>&, const LevelRecord&, const CaseFacts&,
                                             const adapt::Method&, bool);
 template certify::Statements run_statements(const adapt::LevelView<3>&, const LevelRecord&, const CaseFacts&,

@@ -22,7 +22,7 @@ namespace tribound::io
 /// On the first mesh, before anything is solved. All ranks call it and the next one together.
 template <int dim>
 [[nodiscard]] certify::Statements run_statements(const adapt::Discretisation<dim>& first,
-                                                 const adapt::Method& method);
+                                                 const CaseFacts& facts, const adapt::Method& method);
 /// For a level with at least one Newton step, and its record: its data, and how its systems were solved.
 /// `carried`: for a load step, whether the history is transferred between meshes.
 template <int dim>

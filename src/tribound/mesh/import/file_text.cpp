@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <system_error>
 
 namespace tribound::mesh
@@ -43,9 +44,11 @@ bool is_utf8(std::string_view name)
 std::optional<std::int64_t> integer_of(std::string_view field)
 {
   if (field.starts_with('+')) field.remove_prefix(1);
+  constexpr std::int64_t largest = std::numeric_limits<std::int64_t>::max() / 4;
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc{} || end != field.data() + field.size()) return {};
+  if (value > largest || value < -largest) return {};
   return value;
 }
 

@@ -21,7 +21,7 @@ namespace tribound::mesh
 /// Whether a name can be shown: UTF-8 without control characters.
 [[nodiscard]] bool is_utf8(std::string_view name);
 
-/// The whole field as a number; nothing if it is none.
+/// The whole field as a number; nothing if it is none, or so large that sums of some are none.
 [[nodiscard]] std::optional<std::int64_t> integer_of(std::string_view field);
 /// Also with the exponents of Fortran, "1.5D-3".
 [[nodiscard]] std::optional<double> number_of(std::string_view field);

@@ -12,7 +12,7 @@
 namespace tribound::mesh
 {
 
-ImportedMesh InpAssembler::assemble()
+void InpAssembler::put_together()
 {
   check_instances();
   find_dimension();
@@ -29,11 +29,16 @@ ImportedMesh InpAssembler::assemble()
     resolve(i, &InpPart::element_sets, &Instance::element_sets, &Instance::elements);
     mark_sets(i);
   }
+  check_facets();
+  add_regions();
+}
+
+ImportedMesh InpAssembler::assemble()
+{
+  put_together();
   for (std::size_t i = 0; i < instances_.size(); ++i)
     for (const InpSurface& surface : part_of(i).surfaces) add_surface(i, surface);
-  check_facets();
   add_facets();
-  add_regions();
   for (Instance& instance : instances_)
     for (ResolvedSet& set : instance.node_sets)
       if (!set.members.empty()) mesh_.node_sets.push_back({set.name, std::move(set.members)});
@@ -105,7 +110,7 @@ void InpAssembler::add_block(std::size_t i, const InpElements& elements)
   const bool may_be_facet = dim_ == 3
                                 ? elements.family == InpFamily::plane || elements.family == InpFamily::shell
                                 : elements.family == InpFamily::truss;
-  if (!is_cell && !may_be_facet && ignores_elements_)
+  if (!is_cell && !may_be_facet && options_.ignores_elements)
   {
     for (std::size_t e = 0; e < elements.numbers.size(); ++e)
       ignore(elements_.emplace_back(Element{-1, false, &elements, elements.numbers[e], elements.places[e]}));
@@ -165,7 +170,7 @@ std::string InpAssembler::ignored() const
 ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
                       std::vector<std::string>& notes)
 {
-  InpAssembler assembler(file, ignores_elements);
+  InpAssembler assembler(file, {.ignores_elements = ignores_elements});
   ImportedMesh mesh = assembler.assemble();
   if (const std::string ignored = assembler.ignored(); !ignored.empty())
     notes.push_back(fmt::format("{}: {}", file.string(), ignored));

@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -72,20 +73,17 @@ struct ResolvedSet
   bool is_of_surface = false;  ///< helps to define a surface
 };
 
+/// The faces of a surface, or its nodes.
+struct InpSurfaceMembers
+{
+  std::vector<FaceNodes> faces{};
+  std::vector<std::int64_t> labels{};  ///< of the element of each face
+  std::vector<Index> nodes{};          ///< ascending
+};
+
 class InpAssembler
 {
  public:
-  InpAssembler(const std::filesystem::path& file, bool ignores_elements)
-      : lines_(file), ignores_elements_(ignores_elements), model_(parse_inp(lines_, ignores_elements))
-  {
-    mesh_.source = {.file = file.string()};
-  }
-
-  ImportedMesh assemble();
-  /// What has been left out, in words; empty: nothing.
-  [[nodiscard]] std::string ignored() const;
-
- private:
   /// What an element has become: a cell or a possible facet, by its number among those; -1: nothing.
   struct Element
   {
@@ -95,6 +93,36 @@ class InpAssembler
     std::int64_t label;
     InpPlace place;
   };
+
+  /// Reads the deck.
+  InpAssembler(const std::filesystem::path& file, const InpOptions& options)
+      : lines_(file), options_(options), model_(parse_inp(lines_, options))
+  {
+    mesh_.source = {.file = file.string()};
+  }
+
+  /// Makes nodes, cells, regions and sets; what follows is of these.
+  void put_together();
+  /// The mesh with all sets and surfaces as boundaries.
+  ImportedMesh assemble();
+  /// What has been left out, in words; empty: nothing.
+  [[nodiscard]] std::string ignored() const;
+
+  [[nodiscard]] const InpLines& lines() const { return lines_; }
+  [[nodiscard]] const InpModel& model() const { return model_; }
+  [[nodiscard]] const ImportedMesh& mesh() const { return mesh_; }
+  [[nodiscard]] std::span<const Element> elements() const { return elements_; }
+  /// The members of "5", "set" or "instance.set", as places of nodes and of elements. Throws InputError if
+  /// there are none of the name.
+  [[nodiscard]] std::vector<Index> nodes_named(std::string_view field, const InpPlace& place);
+  [[nodiscard]] std::vector<Index> elements_named(std::string_view field, const InpPlace& place);
+  /// "surface" or "instance.surface"; the name as it was defined, with its members. Throws InputError.
+  [[nodiscard]] std::pair<std::string, InpSurfaceMembers> surface_named(std::string_view field,
+                                                                        const InpPlace& place);
+  /// A face of an element, 0-based. Throws InputError if it has none.
+  [[nodiscard]] FaceNodes face_of(const Element& element, int face, const InpPlace& place) const;
+
+ private:
   struct Instance
   {
     NumberIndex nodes{};
@@ -119,8 +147,12 @@ class InpAssembler
                    std::vector<Index>& places, std::vector<ResolvedSet> Instance::*resolved,
                    NumberIndex Instance::*index);
   void mark_sets(std::size_t i);
+  [[nodiscard]] std::vector<Index> members_named(std::string_view field, const InpPlace& place,
+                                                 InpSets InpPart::*sets,
+                                                 std::vector<ResolvedSet> Instance::*resolved,
+                                                 NumberIndex Instance::*index);
+  [[nodiscard]] InpSurfaceMembers members_of(std::size_t i, const InpSurface& surface);
   void add_surface(std::size_t i, const InpSurface& surface);
-  [[nodiscard]] FaceNodes face_of(const Element& element, int face, const InpPlace& place) const;
   void ignore(Element& element);
   void check_facets();
   void add_facets();
@@ -132,7 +164,7 @@ class InpAssembler
   [[noreturn]] void throw_regions_unclear() const;
 
   InpLines lines_;
-  bool ignores_elements_;
+  InpOptions options_;
   InpModel model_;
   ImportedMesh mesh_{};
   int dim_ = 3;

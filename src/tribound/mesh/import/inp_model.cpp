@@ -37,6 +37,32 @@ int InpSets::add(std::string_view name, const InpPlace& place)
   return it->second;
 }
 
+int InpModel::instance_named(std::string_view name) const
+{
+  const std::string wanted = capitals(name);
+  for (std::size_t i = 1; i < instances.size(); ++i)
+    if (capitals(instances[i].name) == wanted) return static_cast<int>(i);
+  return -1;
+}
+
+std::optional<InpMembers> InpModel::find_members(std::string_view field, int part, int instance,
+                                                 InpSets InpPart::*kind) const
+{
+  if (instance >= 0) part = instances[instance].part;
+  std::string_view name = field;
+  if (const std::size_t dot = field.find('.'); dot != std::string_view::npos && instance < 0)
+    if (const int of_name = instance_named(trimmed(field.substr(0, dot))); of_name > 0)
+    {
+      instance = of_name;
+      part = instances[instance].part;
+      name = trimmed(field.substr(dot + 1));
+    }
+  if (const auto one = integer_of(name)) return InpMembers{*one, *one, 1, instance};
+  const int set = (parts[part].*kind).find(name);
+  if (set < 0) return {};
+  return InpMembers{0, 0, 1, instance, set};
+}
+
 namespace
 {
 

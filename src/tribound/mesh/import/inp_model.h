@@ -4,8 +4,10 @@
 /// What a deck for Abaqus or CalculiX says about its mesh: parts, their instances and sets.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -86,12 +88,28 @@ struct InpSurface
   std::vector<InpSurfacePart> parts{};
 };
 
-/// "*SOLID SECTION, ELSET=body", also of shells and beams.
+/// "*SOLID SECTION, ELSET=body, MATERIAL=steel", also of shells and beams.
 struct InpSection
 {
   std::string keyword;
   int set;
   InpPlace place;
+  std::string material{};
+  std::string first_datum{};  ///< of plane elements the thickness; empty: none
+};
+
+/// A keyword that says nothing about the mesh, with its data.
+struct InpBlock
+{
+  struct Line
+  {
+    InpPlace place;
+    std::vector<std::string> fields;
+  };
+
+  InpKeyword keyword;
+  int part;  ///< in which it stands
+  std::vector<Line> lines{};
 };
 
 /// A *PART, or what is outside of parts: the assembly.
@@ -123,14 +141,28 @@ struct InpModel
 {
   std::vector<InpPart> parts{{}};  ///< the first is the assembly, which is its own instance
   std::vector<InpInstance> instances{{.name = {}, .part = 0, .place = {}}};
+  std::vector<InpBlock> blocks{};  ///< in their order; empty unless they are kept
+
+  /// "5", "body", "part-1.5" or "part-1.body" as members of sets of one kind: of the instance, or of the
+  /// part, if there is no instance (-1). Nothing if there is no such set.
+  [[nodiscard]] std::optional<InpMembers> find_members(std::string_view field, int part, int instance,
+                                                       InpSets InpPart::*kind) const;
+  /// -1 if there is none.
+  [[nodiscard]] int instance_named(std::string_view name) const;
 };
 
 /// Finds family and type by the number of nodes in the name, "C3D20R": the letters behind it concern the
 /// integration. False if it is not read.
 [[nodiscard]] bool find_type(std::string_view name, InpElements& elements);
 
-/// Reads all keywords that say something about the mesh and passes over the others. Throws InputError with
-/// file and line, also for elements of an unknown type unless they are to be ignored.
-[[nodiscard]] InpModel parse_inp(InpLines& lines, bool ignores_elements);
+struct InpOptions
+{
+  bool ignores_elements = false;  ///< elements of an unknown type are left out
+  bool keeps_blocks = false;      ///< InpModel::blocks
+};
+
+/// Reads all keywords that say something about the mesh; the others are kept as they are, or passed over.
+/// Throws InputError with file and line, also for elements of an unknown type unless they are to be ignored.
+[[nodiscard]] InpModel parse_inp(InpLines& lines, const InpOptions& options);
 
 }  // namespace tribound::mesh

@@ -62,7 +62,7 @@ void InpAssembler::mark_sets(std::size_t i)
     ResolvedSet& set = instances_[i].element_sets[section.set];
     if (section.keyword == "SOLID SECTION")
       set.is_section = true;
-    else if (!set.members.empty() && !ignores_elements_)
+    else if (!set.members.empty() && !options_.ignores_elements)
       lines_.fail(
           section.place,
           fmt::format("element {} is in a *{}", elements_[set.members[0]].label, section.keyword),
@@ -95,35 +95,82 @@ FaceNodes InpAssembler::face_of(const Element& element, int face, const InpPlace
   return nodes_of(mesh_.cells, {{}, block, element.number - first_cell_[block], face});
 }
 
-void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
+InpSurfaceMembers InpAssembler::members_of(std::size_t i, const InpSurface& surface)
 {
-  const std::string name = full_name(i, surface.name);
-  FacetSet facets{name};
-  NodeSet nodes{name, {}, true};
+  InpSurfaceMembers result;
   std::vector<Index> places;
   for (const InpSurfacePart& part : surface.parts)
   {
     if (surface.is_of_nodes)
     {
-      add_members(part.elements, i, part.place, nodes.nodes, &Instance::node_sets, &Instance::nodes);
+      add_members(part.elements, i, part.place, result.nodes, &Instance::node_sets, &Instance::nodes);
       continue;
     }
     places.clear();
     add_members(part.elements, i, part.place, places, &Instance::element_sets, &Instance::elements);
     for (const Index e : places)
-      if (elements_[e].is_cell || !ignores_elements_)
-        append(facets.facets, face_of(elements_[e], part.face, part.place), elements_[e].label);
+    {
+      if (!elements_[e].is_cell && options_.ignores_elements) continue;
+      result.faces.push_back(face_of(elements_[e], part.face, part.place));
+      result.labels.push_back(elements_[e].label);
+    }
   }
-  if (facets.facets.empty() && !places.empty()) return;  // all of elements that are ignored
-  if (facets.facets.empty() && nodes.nodes.empty())
+  if (result.faces.empty() && result.nodes.empty() && places.empty())
     lines_.fail(surface.place, fmt::format("surface \"{}\" is empty", surface.name));
+  sort_and_unite(result.nodes);
+  return result;
+}
+
+void InpAssembler::add_surface(std::size_t i, const InpSurface& surface)
+{
+  const std::string name = full_name(i, surface.name);
+  InpSurfaceMembers members = members_of(i, surface);
   if (surface.is_of_nodes)
   {
-    sort_and_unite(nodes.nodes);
-    mesh_.node_sets.push_back(std::move(nodes));
+    mesh_.node_sets.push_back({name, std::move(members.nodes), true});
+    return;
   }
-  else
-    mesh_.facet_sets.push_back(std::move(facets));
+  if (members.faces.empty()) return;  // all of elements that are ignored
+  FacetSet facets{name};
+  for (std::size_t f = 0; f < members.faces.size(); ++f)
+    append(facets.facets, members.faces[f], members.labels[f]);
+  mesh_.facet_sets.push_back(std::move(facets));
+}
+
+std::vector<Index> InpAssembler::members_named(std::string_view field, const InpPlace& place,
+                                               InpSets InpPart::*sets,
+                                               std::vector<ResolvedSet> Instance::*resolved,
+                                               NumberIndex Instance::*index)
+{
+  const std::optional<InpMembers> members = model_.find_members(field, 0, -1, sets);
+  if (!members)
+    lines_.fail(place, fmt::format("there is no set \"{}\"", field.substr(0, 80)), "is the deck complete?");
+  std::vector<Index> places;
+  add_members(*members, 0, place, places, resolved, index);
+  sort_and_unite(places);
+  return places;
+}
+
+std::vector<Index> InpAssembler::nodes_named(std::string_view field, const InpPlace& place)
+{
+  return members_named(field, place, &InpPart::node_sets, &Instance::node_sets, &Instance::nodes);
+}
+
+std::vector<Index> InpAssembler::elements_named(std::string_view field, const InpPlace& place)
+{
+  return members_named(field, place, &InpPart::element_sets, &Instance::element_sets, &Instance::elements);
+}
+
+std::pair<std::string, InpSurfaceMembers> InpAssembler::surface_named(std::string_view field,
+                                                                      const InpPlace& place)
+{
+  const std::string wanted = capitals(field);
+  for (std::size_t i = 0; i < model_.instances.size(); ++i)
+    for (const InpSurface& surface : part_of(i).surfaces)
+      if (const std::string name = full_name(i, surface.name); capitals(name) == wanted)
+        return {name, members_of(i, surface)};
+  lines_.fail(place, fmt::format("there is no surface \"{}\"", field.substr(0, 80)),
+              "*SURFACE, NAME=... defines it");
 }
 
 /// Elements of lower dimension must be facets of cells: Gmsh, unical and Salome write surfaces so.
@@ -142,7 +189,7 @@ void InpAssembler::check_facets()
       element.number = n_kept++;
       continue;
     }
-    if (ignores_elements_)
+    if (options_.ignores_elements)
     {
       ignore(element);
       continue;

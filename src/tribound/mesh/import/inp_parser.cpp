@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -49,7 +48,10 @@ InpModel InpParser::parse()
     has_line_ = false;
     if (!lines_.is_keyword()) continue;  // data of a keyword that is passed over
     const InpKeyword keyword = lines_.keyword();
-    if (const Handler handler = handler_of(keyword.name)) (this->*handler)(keyword);
+    if (const Handler handler = handler_of(keyword.name))
+      (this->*handler)(keyword);
+    else if (options_.keeps_blocks)
+      read_block(keyword);
   }
   if (part_ != 0)
     lines_.fail(part().place, fmt::format("part \"{}\" has no *END PART", part().name),
@@ -72,6 +74,17 @@ bool InpParser::next_data()
     read_include(keyword);  // the file may go on with the data
   }
   return false;
+}
+
+void InpParser::read_block(const InpKeyword& keyword)
+{
+  InpBlock block{keyword, part_};
+  while (next_data())
+  {
+    const auto fields = lines_.fields();
+    block.lines.push_back({lines_.place(), {fields.begin(), fields.end()}});
+  }
+  model_.blocks.push_back(std::move(block));
 }
 
 void InpParser::refuse(const InpKeyword& keyword)
@@ -98,10 +111,8 @@ const std::string& InpParser::checked_name(const std::string& name, const InpPla
 
 std::int64_t InpParser::integer(std::string_view field) const
 {
-  constexpr std::int64_t largest = std::numeric_limits<std::int64_t>::max() / 4;  // sums of them are numbers
   const std::optional<std::int64_t> value = integer_of(field);
-  if (!value || *value > largest || *value < -largest)
-    lines_.fail(lines_.place(), fmt::format("\"{}\" is not an integer", field.substr(0, 80)));
+  if (!value) lines_.fail(lines_.place(), fmt::format("\"{}\" is not an integer", field.substr(0, 80)));
   return *value;
 }
 
@@ -147,7 +158,7 @@ void InpParser::read_elements(const InpKeyword& keyword)
     elements.set = part().element_sets.add(checked_name(*set, keyword.place), keyword.place);
   while (next_data())
   {
-    if (!is_read && ignores_elements_)
+    if (!is_read && options_.ignores_elements)
     {
       elements.family = InpFamily::other;
       read_number(elements);
@@ -207,9 +218,9 @@ void InpParser::add_number(InpElements& elements, std::int64_t element, const In
   if (elements.set >= 0) part().element_sets.all[elements.set].add({element, element});
 }
 
-InpModel parse_inp(InpLines& lines, bool ignores_elements)
+InpModel parse_inp(InpLines& lines, const InpOptions& options)
 {
-  return InpParser(lines, ignores_elements).parse();
+  return InpParser(lines, options).parse();
 }
 
 }  // namespace tribound::mesh

@@ -16,7 +16,7 @@ namespace tribound::mesh
 class InpParser
 {
  public:
-  InpParser(InpLines& lines, bool ignores_elements) : lines_(lines), ignores_elements_(ignores_elements) {}
+  InpParser(InpLines& lines, const InpOptions& options) : lines_(lines), options_(options) {}
 
   InpModel parse();
 
@@ -42,19 +42,19 @@ class InpParser
   void end_part(const InpKeyword& keyword);
   void read_instance(const InpKeyword& keyword);
   void read_include(const InpKeyword& keyword) { lines_.include(keyword.find("INPUT").value_or("")); }
+  void read_block(const InpKeyword& keyword);
   void refuse(const InpKeyword& keyword);
 
   [[nodiscard]] std::string required(const InpKeyword& keyword, std::string_view parameter) const;
   /// A name that can be shown.
   [[nodiscard]] const std::string& checked_name(const std::string& name, const InpPlace& place) const;
-  [[nodiscard]] int instance_named(std::string_view name) const;
   /// "5", "body", "part-1.5" or "part-1.body" as members of sets of one kind.
   [[nodiscard]] InpMembers members_of(std::string_view field, int instance, InpSets InpPart::*kind) const;
   [[nodiscard]] std::int64_t integer(std::string_view field) const;
   [[nodiscard]] double number(std::string_view field) const;
 
   InpLines& lines_;
-  bool ignores_elements_;
+  InpOptions options_;
   InpModel model_{};
   int part_ = 0;
   bool has_line_ = false;  ///< the present line has not been dealt with

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <optional>
@@ -11,31 +12,13 @@
 namespace tribound::mesh
 {
 
-int InpParser::instance_named(std::string_view name) const
-{
-  const std::string wanted = capitals(name);
-  for (std::size_t i = 1; i < model_.instances.size(); ++i)
-    if (capitals(model_.instances[i].name) == wanted) return static_cast<int>(i);
-  return -1;
-}
-
 InpMembers InpParser::members_of(std::string_view field, int instance, InpSets InpPart::*kind) const
 {
-  int owner = instance < 0 ? part_ : model_.instances[instance].part;
-  std::string_view name = field;
-  if (const std::size_t dot = field.find('.'); dot != std::string_view::npos && instance < 0)
-    if (const int of_name = instance_named(trimmed(field.substr(0, dot))); of_name > 0)
-    {
-      instance = of_name;
-      owner = model_.instances[instance].part;
-      name = trimmed(field.substr(dot + 1));
-    }
-  if (const auto one = integer_of(name); one) return {integer(name), integer(name), 1, instance};
-  const int set = (model_.parts[owner].*kind).find(name);
-  if (set < 0)
+  const std::optional<InpMembers> members = model_.find_members(field, part_, instance, kind);
+  if (!members)
     lines_.fail(lines_.place(), fmt::format("there is no set \"{}\" so far", field.substr(0, 80)),
                 "sets stand before what uses them");
-  return {0, 0, 1, instance, set};
+  return *members;
 }
 
 void InpParser::read_set(const InpKeyword& keyword, InpSets& sets, const std::string& parameter)
@@ -43,7 +26,7 @@ void InpParser::read_set(const InpKeyword& keyword, InpSets& sets, const std::st
   const std::string name = required(keyword, parameter);
   int instance = -1;
   if (const auto of = keyword.find("INSTANCE"))
-    if (instance = instance_named(*of); instance < 0)
+    if (instance = model_.instance_named(*of); instance < 0)
       lines_.fail(keyword.place, fmt::format("there is no instance \"{}\"", *of));
   const int number = sets.add(checked_name(name, keyword.place), keyword.place);
   sets.all[number].is_from_set_keyword = true;
@@ -104,7 +87,15 @@ void InpParser::read_surface(const InpKeyword& keyword)
         members_of(fields[0], -1, surface.is_of_nodes ? &InpPart::node_sets : &InpPart::element_sets);
     surface.parts.push_back(one);
   }
-  part().surfaces.push_back(std::move(surface));
+  // The same name again adds to the surface.
+  const auto same = std::ranges::find_if(
+      part().surfaces, [&](const InpSurface& other) { return capitals(other.name) == capitals(name); });
+  if (same == part().surfaces.end())
+    part().surfaces.push_back(std::move(surface));
+  else if (same->is_of_nodes == surface.is_of_nodes)
+    same->parts.insert(same->parts.end(), surface.parts.begin(), surface.parts.end());
+  else
+    lines_.fail(keyword.place, fmt::format("surface \"{}\" is of nodes and of elements", name));
 }
 
 void InpParser::read_section(const InpKeyword& keyword)
@@ -113,7 +104,11 @@ void InpParser::read_section(const InpKeyword& keyword)
   if (!name) return;
   const int set = part().element_sets.find(*name);
   if (set < 0) lines_.fail(keyword.place, fmt::format("there is no set \"{}\" so far", *name));
-  part().sections.push_back({keyword.name, set, keyword.place});
+  InpSection section{keyword.name, set, keyword.place, keyword.find("MATERIAL").value_or("")};
+  while (next_data())
+    if (const auto fields = lines_.fields(); section.first_datum.empty() && !fields.empty())
+      section.first_datum = fields[0];
+  part().sections.push_back(std::move(section));
 }
 
 void InpParser::begin_part(const InpKeyword& keyword)
@@ -145,7 +140,7 @@ void InpParser::read_instance(const InpKeyword& keyword)
     lines_.fail(keyword.place,
                 fmt::format("instance \"{}\" of part \"{}\", which is not defined here", instance.name, name),
                 "parts stand before the assembly");
-  if (instance_named(instance.name) > 0)
+  if (model_.instance_named(instance.name) > 0)
     lines_.fail(keyword.place, fmt::format("there are two instances \"{}\"", instance.name));
   for (int line = 0; next_data(); ++line)
   {

@@ -16,10 +16,6 @@
 namespace tribound::mesh
 {
 
-namespace
-{
-
-/// For every node of a cell a node that stands for its body; -1 for other nodes.
 std::vector<Index> bodies_of_nodes(const ImportedMesh& mesh)
 {
   std::vector<Index> parent(mesh.nodes.size(), -1);
@@ -39,6 +35,9 @@ std::vector<Index> bodies_of_nodes(const ImportedMesh& mesh)
     if (parent[node] >= 0) parent[node] = root(static_cast<Index>(node));
   return parent;
 }
+
+namespace
+{
 
 class NodeSetFacets
 {

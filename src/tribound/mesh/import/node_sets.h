@@ -8,6 +8,9 @@
 namespace tribound::mesh
 {
 
+/// For every node of a cell a node that stands for its body; -1 for other nodes.
+[[nodiscard]] std::vector<Index> bodies_of_nodes(const ImportedMesh& mesh);
+
 /// Turns the node sets of a mesh into facet sets: the outer facets of cells all of whose nodes, middles too,
 /// are in the set. Left out, with a note: sets without such a facet, sets that have all nodes of a body, and
 /// sets with the same facets as a facet set or an earlier node set. Throws InputError for a set without

@@ -1,0 +1,94 @@
+#pragma once
+
+/// @file case_maker.h
+/// The case and the mesh that a deck stands for.
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tribound/case/deck/deck.h"
+#include "tribound/case/deck/deck_faces.h"
+#include "tribound/case/deck/deck_log.h"
+#include "tribound/case/deck/groups.h"
+#include "tribound/case/node.h"
+#include "tribound/mesh/import/inp_assembler.h"
+#include "tribound/mesh/import/node_sets.h"
+
+namespace tribound::case_file
+{
+
+inline void put(Node::Table& table, const std::string& name, Node node)
+{
+  table.push_back({name, {}, std::move(node)});
+}
+
+/// Keeps references.
+class CaseMaker
+{
+ public:
+  CaseMaker(const Deck& deck, mesh::InpAssembler& assembler, const DeckFaces& faces, DeckLog& log)
+      : deck_(deck),
+        assembler_(assembler),
+        faces_(faces),
+        log_(log),
+        body_(mesh::bodies_of_nodes(assembler.mesh()))
+  {
+  }
+
+  /// Writes the tables of the case; what cannot be written goes into the log.
+  Node::Table make();
+  /// The mesh with the regions and boundaries of the case.
+  [[nodiscard]] mesh::ImportedMesh mesh() const;
+
+ private:
+  struct PairGroups
+  {
+    const DeckPair* pair;
+    const DeckInteraction* interaction;  ///< null: tied
+    int slave;
+    int master;
+  };
+
+  void find_history();
+  void find_regions();
+  void find_boundaries();
+  [[nodiscard]] std::vector<Index> faces_of_displacement(const DeckLoad& load);
+  /// The faces of bodies all of whose nodes are held in one direction that lie across it.
+  void add_faces_across(const DeckLoad& load, const std::vector<char>& is_whole, std::vector<Index>& faces);
+
+  [[nodiscard]] const DeckMaterial* material_of(const std::string& region) const;
+  [[nodiscard]] Node material(const Groups::Part& region) const;
+  [[nodiscard]] Node::Table load(const Groups::Part& region) const;
+  void add_body_force(const Groups::Part& region, Node::Table& table) const;
+  void add_temperature(const Groups::Part& region, Node::Table& table) const;
+  /// The course of the temperature at all nodes of a region; null if there is none.
+  [[nodiscard]] const Course* temperature_of(const Groups::Part& region,
+                                             const std::vector<DeckLoad>& loads) const;
+  [[nodiscard]] Node::Table boundary(const Groups::Part& part) const;
+  [[nodiscard]] Node displacement(const Groups::Part& part, bool& is_given) const;
+  [[nodiscard]] std::vector<std::pair<double, const Course*>> terms(const Groups::Part& part,
+                                                                    DeckLoadKind kind, int component) const;
+  [[nodiscard]] Node::Table contact(const PairGroups& pair);
+  void add_gap(const PairGroups& pair, Node::Table& table);
+  [[nodiscard]] Node sides(int group) const;
+  void add_quantities(Node::Table& table) const;
+  void add_probes(Node::Table& table) const;
+
+  const Deck& deck_;
+  mesh::InpAssembler& assembler_;
+  const DeckFaces& faces_;
+  DeckLog& log_;
+  std::vector<Index> body_;  ///< of each node: mesh::bodies_of_nodes()
+  Groups cell_groups_{};
+  Groups face_groups_{};
+  std::vector<Groups::Part> regions_{};
+  std::vector<Groups::Part> boundaries_{};
+  std::vector<int> group_of_load_{};  ///< -1: none
+  std::vector<PairGroups> pairs_{};
+  std::map<std::string, std::string> material_of_region_{};
+  std::vector<double> times_{};  ///< empty: only the end of the last step counts
+};
+
+}  // namespace tribound::case_file

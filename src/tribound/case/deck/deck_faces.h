@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file deck_faces.h
+/// The outer faces of the cells of a deck.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tribound/mesh/import/cell_faces.h"
+#include "tribound/mesh/import/imported_mesh.h"
+
+namespace tribound::case_file
+{
+
+/// Faces go by their number, in an order that the mesh gives; in 2D they are edges. Keeps a reference.
+class DeckFaces
+{
+ public:
+  explicit DeckFaces(const mesh::ImportedMesh& mesh);
+
+  [[nodiscard]] std::size_t size() const { return faces_.size(); }
+  [[nodiscard]] int dim() const { return dim_; }
+  [[nodiscard]] mesh::FaceNodes nodes(Index face) const { return mesh::nodes_of(mesh_.cells, faces_[face]); }
+  /// Of the element, in the file.
+  [[nodiscard]] std::int64_t label(Index face) const
+  {
+    return mesh_.cells[faces_[face].block].numbers[faces_[face].element];
+  }
+  [[nodiscard]] Index n_cells() const { return n_cells_; }
+  /// -1 if it is no outer face.
+  [[nodiscard]] Index find(const mesh::FaceNodes& face) const;
+  /// Those all of whose nodes are among the given ones.
+  [[nodiscard]] std::vector<Index> with_all_nodes(std::span<const Index> nodes) const;
+  /// Those all of whose nodes that carry a part of a uniform load are among the given ones: of a triangle of
+  /// 6 nodes the middles alone do.
+  [[nodiscard]] std::vector<Index> loaded_by(std::span<const Index> nodes) const;
+  /// The integrals of the shape functions over a face, node by node: what a uniform load is at the nodes.
+  [[nodiscard]] std::vector<double> weights(Index face) const;
+  /// The outward unit normal, at the centre.
+  [[nodiscard]] Point<3> normal(Index face) const;
+  /// Faces that share nodes are in one of the parts.
+  [[nodiscard]] std::vector<std::vector<Index>> connected(std::span<const Index> faces) const;
+  /// As triangles; in 2D as a segment, whose second end stands twice.
+  [[nodiscard]] std::vector<std::array<Point<3>, 3>> triangles(Index face) const;
+
+ private:
+  template <class Counts>
+  [[nodiscard]] std::vector<Index> faces_where(std::span<const Index> nodes, const Counts& counts) const;
+
+  const mesh::ImportedMesh& mesh_;
+  int dim_;
+  Index n_cells_ = 0;
+  std::vector<mesh::CellFace> faces_{};  ///< ascending by key
+};
+
+/// The distance of a point from a triangle, which may be a segment.
+[[nodiscard]] double distance(const Point<3>& x, const std::array<Point<3>, 3>& triangle);
+
+}  // namespace tribound::case_file

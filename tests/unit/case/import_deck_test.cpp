@@ -1,0 +1,499 @@
+/// Decks as cases: what each keyword becomes, and what is refused.
+
+#include "tribound/case/deck/import_deck.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+
+#include "support/damaged.h"
+#include "support/input_error.h"
+#include "tribound/case/config.h"
+#include "tribound/case/deck/course.h"
+#include "tribound/case/deck/groups.h"
+#include "tribound/case/deck/nodal_forces.h"
+#include "tribound/problem/formula.h"
+
+namespace tribound
+{
+
+namespace
+{
+
+using case_file::ImportedDeck;
+using test::message_of;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two cubes of one element each, the upper one on the lower one; nodes 1 to 8 and 11 to 18.
+constexpr std::string_view two_cubes = R"(*HEADING
+Two cubes, hand made
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 1, 1, 0
+4, 0, 1, 0
+5, 0, 0, 1
+6, 1, 0, 1
+7, 1, 1, 1
+8, 0, 1, 1
+11, 0, 0, 1
+12, 1, 0, 1
+13, 1, 1, 1
+14, 0, 1, 1
+15, 0, 0, 2
+16, 1, 0, 2
+17, 1, 1, 2
+18, 0, 1, 2
+*ELEMENT, TYPE=C3D8, ELSET=lower
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=upper
+2, 11, 12, 13, 14, 15, 16, 17, 18
+*NSET, NSET=base
+1, 2, 3, 4
+*NSET, NSET=top
+15, 16, 17, 18
+*SURFACE, NAME=below
+lower, S2
+*SURFACE, NAME=above
+upper, S1
+*SURFACE, NAME=crown
+upper, S2
+*MATERIAL, NAME=steel
+*ELASTIC
+210000., .3
+*DENSITY
+7.8E-9
+*EXPANSION
+1.2E-5
+*SOLID SECTION, ELSET=lower, MATERIAL=steel
+*SOLID SECTION, ELSET=upper, MATERIAL=steel
+*SURFACE INTERACTION, NAME=touch
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+1.E6
+*FRICTION
+.3, 1.E5
+*CONTACT PAIR, INTERACTION=touch, TYPE=NODE TO SURFACE
+above, below
+*BOUNDARY
+base, 1, 3
+)";
+
+constexpr std::string_view one_step = "*STEP\n*STATIC\n1., 1.\n";
+
+class ImportDeck : public testing::Test
+{
+ protected:
+  void SetUp() override { std::filesystem::create_directories(directory_); }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  ImportedDeck import(std::string_view text, const std::set<std::string>& accepted = {})
+  {
+    std::ofstream(directory_ / "deck.inp") << text;
+    return case_file::import_deck(directory_ / "deck.inp", "deck.msh", accepted);
+  }
+  /// The two cubes with more model data, and a step of 1 with these loads.
+  ImportedDeck import(std::string_view model, std::string_view loads,
+                      const std::set<std::string>& accepted = {})
+  {
+    return import(fmt::format("{}{}{}{}*END STEP\n", two_cubes, model, one_step, loads), accepted);
+  }
+  static case_file::Config config_of(const ImportedDeck& deck)
+  {
+    return case_file::parse_config(deck.case_text, "deck.toml");
+  }
+  static const case_file::BoundaryConfig& boundary(const case_file::Config& config, const std::string& name)
+  {
+    const auto found = std::ranges::find(config.boundaries, name, &case_file::BoundaryConfig::name);
+    if (found == config.boundaries.end()) throw std::runtime_error("no boundary " + name);
+    return *found;
+  }
+  static double value(const problem::Field& field, double t, const Point<3>& x = Point<3>::Zero())
+  {
+    return field.at(t)(x);
+  }
+
+  std::filesystem::path directory_ =
+      std::filesystem::temp_directory_path() / fmt::format("tribound_import_{}", getpid());
+};
+
+TEST_F(ImportDeck, MakesACaseOfTwoCubes)
+{
+  const ImportedDeck deck = import("", "*DSLOAD\ncrown, P, 2.5\n");
+  const case_file::Config config = config_of(deck);
+  EXPECT_EQ(config.title, "Two cubes, hand made");
+  ASSERT_EQ(config.materials.size(), 2U);
+  EXPECT_EQ(config.materials[0].E, 210000);
+  EXPECT_EQ(config.materials[0].nu, 0.3);
+  ASSERT_EQ(config.contacts.size(), 1U);
+  EXPECT_THAT(config.contacts[0].slave, testing::ElementsAre("above"));
+  EXPECT_THAT(config.contacts[0].master, testing::ElementsAre("below"));
+  EXPECT_EQ(boundary(config, "base").displacement.size(), 3U);
+  EXPECT_EQ(value(*boundary(config, "crown").pressure, 1), 2.5);
+  EXPECT_FALSE(config.history);
+  EXPECT_THAT(config.not_covered, testing::Contains(HasSubstr("stiffness (LINEAR) is dropped")));
+  EXPECT_THAT(deck.case_text, HasSubstr("*SURFACE BEHAVIOR"));
+  EXPECT_EQ(deck.mesh.cell_sets.size(), 2U);
+  EXPECT_EQ(deck.mesh.facet_sets.size(), 4U);
+}
+
+TEST_F(ImportDeck, SpreadsNodalForces)
+{
+  const case_file::Config exact = config_of(import("", "*CLOAD\ntop, 3, -2.\n"));
+  EXPECT_NEAR(value(boundary(exact, "top").traction[2], 1), -8, 1e-12);
+  EXPECT_EQ(value(boundary(exact, "top").traction[0], 1), 0);
+
+  // The lines of a step add up, also where nodes are given one by one.
+  const ImportedDeck uneven =
+      import("", "*CLOAD\n15, 3, -1.\n16, 3, -1.\n17, 3, -2.\n18, 3, -1.5\n18, 3, -.5\n");
+  const case_file::Config spread = config_of(uneven);
+  EXPECT_NEAR(value(spread.boundaries.back().traction[2], 1), -6, 1e-12);
+  EXPECT_THAT(spread.not_covered, testing::Contains(HasSubstr("spread evenly")));
+
+  const auto alone = [&] { return import("", "*CLOAD\n15, 3, -1.\n"); };
+  EXPECT_THAT(message_of(alone), HasSubstr("forces at single nodes, such as node 15"));
+  EXPECT_THAT(message_of(alone), HasSubstr("deck.inp:56: *CLOAD"));
+  EXPECT_NO_THROW(static_cast<void>(import("", "*CLOAD\n15, 3, -1.\n", {"CLOAD"})));
+}
+
+TEST_F(ImportDeck, CutsSetsThatOverlap)
+{
+  const case_file::Config config = config_of(import("", "*DSLOAD\ncrown, P, 1.\n*CLOAD\ntop, 3, -1.\n"));
+  EXPECT_EQ(value(*boundary(config, "crown").pressure, 1), 1);
+  EXPECT_NEAR(value(boundary(config, "crown").traction[2], 1), -4, 1e-12);
+}
+
+TEST_F(ImportDeck, FollowsSteps)
+{
+  const std::string steps = R"(*AMPLITUDE, NAME=wave
+0., 0., .5, 1., 1., -1.
+*STEP
+*STATIC
+.25, 1.
+*DSLOAD
+crown, P, 4.
+*END STEP
+*STEP
+*STATIC
+.5, 2.
+*CLOAD, AMPLITUDE=wave
+top, 1, 1.
+*END STEP
+)";
+  const case_file::Config config = config_of(import(std::string(two_cubes) + steps));
+  ASSERT_TRUE(config.history);
+  const problem::Field& pressure = *boundary(config, "crown").pressure;
+  for (const auto& [t, p] : std::map<double, double>{{0.25, 1}, {0.5, 2}, {1, 4}, {2, 4}, {3, 4}})
+    EXPECT_NEAR(value(pressure, t), p, 1e-14);
+  const problem::Field& shear = boundary(config, "crown").traction[0];
+  for (const auto& [t, s] :
+       std::map<double, double>{{0.5, 0}, {1, 0}, {1.25, 2}, {1.5, 4}, {1.75, 0}, {2, -4}, {3, -4}})
+    EXPECT_NEAR(value(shear, t), s, 1e-12) << t;
+  EXPECT_THAT(config.history->program.targets, testing::ElementsAre(0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3));
+}
+
+TEST_F(ImportDeck, TakesWeightRotationAndTemperature)
+{
+  const case_file::Config config = config_of(
+      import("*NSET, NSET=all\n1, 2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 15, 16, 17, 18\n*INITIAL CONDITIONS, "
+             "TYPE=TEMPERATURE\nall, 20.\n",
+             "*DLOAD\nlower, GRAV, 9810., 0., 0., -2.\nupper, CENTRIF, 100., 1., 0., 0., 0., 0., "
+             "3.\n*TEMPERATURE\nall, "
+             "120.\n"));
+  ASSERT_EQ(config.loads.size(), 2U);
+  const case_file::LoadConfig& lower = config.loads[0];
+  const case_file::LoadConfig& upper = config.loads[1];
+  EXPECT_NEAR(value(lower.body[2], 1), -7.8e-9 * 9810, 1e-18);
+  const Point<3> x(3, 5, 7);
+  EXPECT_NEAR(value(upper.body[0], 1, x), 7.8e-9 * 100 * 2, 1e-18);
+  EXPECT_NEAR(value(upper.body[1], 1, x), 7.8e-9 * 100 * 5, 1e-18);
+  EXPECT_EQ(value(upper.body[2], 1, x), 0);
+  EXPECT_EQ(value(*lower.temperature, 1), 120);
+  EXPECT_EQ(value(lower.reference_temperature, 1), 20);
+}
+
+TEST_F(ImportDeck, AdjustsAndClears)
+{
+  const auto with = [&](const std::string& pair, double shift)
+  {
+    std::string text(two_cubes);
+    text.replace(text.find("TYPE=NODE TO SURFACE"), 20, pair);
+    for (const char* node : {"11, 0, 0, 1", "12, 1, 0, 1", "13, 1, 1, 1", "14, 0, 1, 1"})
+    {
+      const std::string moved = fmt::format("{}{}", std::string(node).substr(0, 10), 1 + shift);
+      text.replace(text.find(node), 11, moved);
+    }
+    return import(text + std::string(one_step) + "*DSLOAD\ncrown, P, 1.\n*END STEP\n").case_text;
+  };
+  EXPECT_THAT(with("ADJUST=.02", 0.01), HasSubstr("gap = 0"));
+  EXPECT_THAT(with("ADJUST=0.", -0.01), HasSubstr("gap = 0"));
+  EXPECT_THAT(with("ADJUST=.005", 0.01), Not(HasSubstr("gap = 0")));
+  EXPECT_THAT(with("ADJUST=.005", 0.01), HasSubstr("farther apart than 0.005"));
+  const case_file::Config config =
+      config_of(import("*CLEARANCE, SLAVE=above, MASTER=below, VALUE=-1.E-3\n", "*DSLOAD\ncrown, P, 1.\n"));
+  EXPECT_EQ(value(*config.contacts[0].contact.gap, 1), -1e-3);
+}
+
+struct Refused
+{
+  const char* model;
+  const char* loads;
+  const char* message;
+  const char* accept;  ///< empty: cannot be accepted
+};
+
+TEST_F(ImportDeck, NamesWhatItCannotTake)
+{
+  const Refused cases[] = {
+      {"*EQUATION\n2\n1, 1, 1., 2, 1, -1.\n", "", "*EQUATION: has no counterpart", "EQUATION"},
+      {"*MATERIAL, NAME=soft\n*PLASTIC\n100., 0.\n", "", "*PLASTIC: has no counterpart", "PLASTIC"},
+      {"*MATERIAL, NAME=soft\n*ELASTIC, TYPE=ORTHO\n1., 2.\n", "", "are not isotropic", ""},
+      {"", "*DYNAMIC\n", "only static steps", ""},
+      {"", "*BOUNDARY, OP=NEW\n", "OP=NEW ends that of base", ""},
+      {"", "*BOUNDARY\n15, 1, 1\n", "node 15, which lies on no face that is held", "BOUNDARY"},
+      {"", "*DLOAD\nupper, BX, 1.\n", "the load \"BX\" cannot be imported", "DLOAD"},
+      {"*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nupper\n", "", "*MODEL CHANGE", "MODEL CHANGE"},
+      {"*AMPLITUDE, NAME=a, USER\n", "", "only tables", ""},
+      {"*CLEARANCE, SLAVE=none, MASTER=below, VALUE=1\n", "", "there is no contact pair", ""},
+  };
+  for (const Refused& c : cases)
+  {
+    EXPECT_THAT(message_of([&] { return import(c.model, c.loads); }), HasSubstr(c.message));
+    const std::string accepted = message_of([&] { return import(c.model, c.loads, {c.accept}); });
+    EXPECT_EQ(accepted.empty(), *c.accept != 0) << c.message << accepted;
+  }
+  const std::string nonlinear = fmt::format("{}*STEP, NLGEOM\n*STATIC\n*END STEP\n", two_cubes);
+  EXPECT_THAT(message_of([&] { return import(nonlinear); }), HasSubstr("--accept \"NLGEOM\""));
+  EXPECT_THAT(config_of(import(nonlinear, std::set<std::string>{"NLGEOM"})).not_covered,
+              testing::Contains(HasSubstr("strains and rotations are small")));
+}
+
+TEST_F(ImportDeck, ReportsAllProblemsAtOnce)
+{
+  const std::string message =
+      message_of([&] { return import("*EQUATION\n*TRANSFORM\n", "*DLOAD\nupper, BX, 1.\n"); });
+  for (const char* problem : {"*EQUATION", "*TRANSFORM", "*DLOAD"}) EXPECT_THAT(message, HasSubstr(problem));
+}
+
+TEST_F(ImportDeck, HoldsPrismsByTheirEnds)
+{
+  const std::string all = "*NSET, NSET=all\n1, 2, 3, 4, 5, 6, 7, 8, 11, 12, 13, 14, 15, 16, 17, 18\n";
+  const case_file::Config config =
+      config_of(import(all + "*BOUNDARY\nall, 2, 2\n", "*DSLOAD\ncrown, P, 1.\n"));
+  const case_file::BoundaryConfig& ends = boundary(config, "all");
+  ASSERT_EQ(ends.displacement.size(), 3U);
+  EXPECT_FALSE(ends.displacement[0]);
+  EXPECT_EQ(value(*ends.displacement[1], 1), 0);
+  EXPECT_THAT(config.not_covered, testing::Contains(HasSubstr("held on the faces across it alone")));
+}
+
+TEST_F(ImportDeck, DamagedDecksEndInAMessage)
+{
+  const std::string sound = std::string(two_cubes) + R"(*NSET, NSET=all, GENERATE
+1, 18
+*INITIAL CONDITIONS, TYPE=TEMPERATURE
+all, 20.
+*AMPLITUDE, NAME=wave, TIME=TOTAL TIME
+0., 0., .5, 1., 1., -1.
+*TIE, NAME=t, POSITION TOLERANCE=.1
+above, below
+*CLEARANCE, SLAVE=above, MASTER=below, VALUE=.001
+*STEP, NLGEOM=NO
+*STATIC
+.25, 1.
+*BOUNDARY, AMPLITUDE=wave
+15, 1, 1, .1
+16, 1, 1, .1
+17, 1, 1, .1
+18, 1, 1, .1
+*CLOAD, OP=NEW
+top, 3, 1.
+*DLOAD
+upper, P2, 1.
+lower, GRAV, 9.81, 0., 0., -1.
+upper, CENTRIF, 10., 0., 0., 0., 0., 0., 1.
+*TEMPERATURE
+all, 30.
+*NODE PRINT, NSET=top
+U
+*END STEP
+)";
+  std::mt19937 random(5);
+  int n_imported = 0;
+  for (int k = 0; k < 2000; ++k)
+  {
+    const std::string text = test::damaged(sound, random);
+    try
+    {
+      const ImportedDeck deck = import(text, std::set<std::string>{"BOUNDARY"});
+      ++n_imported;
+      static_cast<void>(config_of(deck));
+    }
+    catch (const InputError& error)
+    {
+      EXPECT_NE(error.problem(), "");
+    }
+  }
+  EXPECT_GT(n_imported, 300);
+}
+
+/// The function of time that a deck means, point by point.
+double interpolate(const std::vector<case_file::Course::Point>& points, double t)
+{
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (t <= points[i].t && points[i].t > points[i - 1].t)
+      return points[i - 1].value + (points[i].value - points[i - 1].value) * (t - points[i - 1].t) /
+                                       (points[i].t - points[i - 1].t);
+  return points.back().value;
+}
+
+double value_of(const std::string& formula, double t)
+{
+  return problem::Formula(formula, {}, t)({});
+}
+
+TEST(Course, IsItsFormula)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<> value(-3, 3);
+  for (int trial = 0; trial < 300; ++trial)
+  {
+    case_file::Course course;
+    std::vector<case_file::Course::Point> points;
+    double t = 0;
+    for (int i = 0; i < 2 + trial % 7; ++i)
+    {
+      points.push_back({t, random() % 4 == 0 && !points.empty() ? points.back().value : value(random)});
+      course.add(points.back().t, points.back().value);
+      if (random() % 5 != 0) t += 0.25 * static_cast<double>(1 + random() % 4);
+    }
+    if (points.back().t == 0) continue;
+    const double factor = value(random);
+    const case_file::Node datum = course.datum(factor, false);
+    for (int k = 0; k < 20; ++k)
+    {
+      const double at = points.back().t * (k + 0.5) / 20;
+      const auto* number = std::get_if<double>(&datum.value);
+      const double found = number != nullptr ? *number : value_of(std::get<std::string>(datum.value), at);
+      EXPECT_NEAR(found, factor * interpolate(points, at), 1e-12)
+          << (number != nullptr ? std::string("a number") : std::get<std::string>(datum.value)) << " at "
+          << at;
+    }
+  }
+}
+
+TEST(Groups, AreCutIntoParts)
+{
+  std::mt19937 random(11);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    case_file::Groups groups;
+    std::vector<std::set<Index>> given;
+    for (int g = 0; g < 5; ++g)
+    {
+      std::set<Index> members;
+      for (Index i = 0; i < 12; ++i)
+        if (random() % 3 == 0) members.insert(i);
+      if (members.empty()) continue;
+      const int number = groups.add(fmt::format("g{}", g), {members.begin(), members.end()});
+      if (number == static_cast<int>(given.size())) given.push_back(members);
+    }
+    std::vector<std::set<Index>> found(given.size());
+    std::set<Index> all;
+    std::set<std::string> names;
+    for (const case_file::Groups::Part& part : groups.parts())
+    {
+      EXPECT_TRUE(names.insert(part.name).second);
+      for (const Index member : part.members)
+      {
+        EXPECT_TRUE(all.insert(member).second);
+        for (const int g : part.groups) found[g].insert(member);
+      }
+    }
+    EXPECT_EQ(found, given);
+  }
+}
+
+/// A plane element with corners at random, and what a uniform load is at its nodes by the textbook.
+TEST(NodalForces, OfUniformTractionsAreRecognised)
+{
+  using mesh::Shape;
+  struct Textbook
+  {
+    mesh::ElementType cell;
+    mesh::ElementType face;
+    double corner;
+    double middle;
+  };
+  const Textbook books[] = {{{Shape::tetrahedron, 4}, {Shape::triangle, 3}, 1. / 3, 0},
+                            {{Shape::tetrahedron, 10}, {Shape::triangle, 6}, 0, 1. / 3},
+                            {{Shape::hexahedron, 8}, {Shape::quadrilateral, 4}, 1. / 4, 0},
+                            {{Shape::hexahedron, 20}, {Shape::quadrilateral, 8}, -1. / 12, 1. / 3},
+                            {{Shape::hexahedron, 27}, {Shape::quadrilateral, 9}, 1. / 36, 1. / 9}};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<> value(-1, 1);
+  for (const Textbook& book : books)
+  {
+    const mesh::ShapeTable& table = mesh::table_of(book.cell.shape);
+    // Corners of the reference cell, moved by an affine map: faces are triangles or parallelograms.
+    const std::vector<Point<3>> corners =
+        book.cell.shape == Shape::tetrahedron
+            ? std::vector<Point<3>>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
+            : std::vector<Point<3>>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    Eigen::Matrix3d map = Eigen::Matrix3d::Identity();
+    for (int i = 0; i < 9; ++i) map(i / 3, i % 3) += 0.3 * value(random);
+    mesh::ImportedMesh mesh;
+    for (const Point<3>& x : corners) mesh.nodes.emplace_back(map * x);
+    for (int e = 0; e < table.n_edges && mesh::has_middles(book.cell); ++e)
+      mesh.nodes.emplace_back((mesh.nodes[table.edges[e][0]] + mesh.nodes[table.edges[e][1]]) / 2);
+    for (int f = 0; f < table.n_faces && book.cell.n_nodes == 27; ++f)
+      mesh.nodes.emplace_back(
+          (mesh.nodes[table.faces[f].corners[0]] + mesh.nodes[table.faces[f].corners[2]]) / 2);
+    while (static_cast<int>(mesh.nodes.size()) < book.cell.n_nodes)
+      mesh.nodes.emplace_back((mesh.nodes[0] + mesh.nodes[6]) / 2);
+    mesh::ElementBlock block{book.cell};
+    for (int i = 0; i < book.cell.n_nodes; ++i) block.nodes.push_back(i);
+    block.numbers = {1};
+    mesh.cells = {block};
+
+    const case_file::DeckFaces faces(mesh);
+    const Index face = 1;
+    const mesh::FaceNodes nodes = faces.nodes(face);
+    ASSERT_EQ(nodes.type, book.face);
+    const int n_corners = mesh::table_of(book.face.shape).n_corners;
+    const Point<3> a = mesh.nodes[nodes.nodes[1]] - mesh.nodes[nodes.nodes[0]];
+    const Point<3> b = mesh.nodes[nodes.nodes[n_corners - 1]] - mesh.nodes[nodes.nodes[0]];
+    const double area = a.cross(b).norm() / (n_corners == 3 ? 2 : 1);
+    const Point<3> traction(value(random), value(random), value(random));
+    std::map<Index, Point<3>> forces;
+    for (int i = 0; i < nodes.type.n_nodes; ++i)
+    {
+      const double weight = i < n_corners ? book.corner : i < 8 ? book.middle : 4. / 9;
+      if (weight != 0) forces[nodes.nodes[i]] = weight * area * traction;
+    }
+    const case_file::SpreadForces found = case_file::spread(faces, forces);
+    ASSERT_EQ(found.parts.size(), 1U);
+    EXPECT_TRUE(found.lone_nodes.empty());
+    EXPECT_TRUE(found.parts[0].is_exact);
+    EXPECT_NEAR(found.parts[0].area, area, 1e-13);
+    EXPECT_LT((found.parts[0].traction - traction).norm(), 1e-12);
+
+    forces.begin()->second *= 1.1;
+    EXPECT_FALSE(case_file::spread(faces, forces).parts[0].is_exact);
+  }
+}
+
+}  // namespace
+
+}  // namespace tribound
