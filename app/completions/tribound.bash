@@ -3,7 +3,7 @@
 _tribound()
 {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands="init mesh info schema check run sweep verify study" command= word candidates=
+  local commands="init import mesh info schema check run sweep verify study" command= word candidates=
 
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if [[ " $commands " == *" $word "* ]]; then
@@ -23,11 +23,12 @@ _tribound()
       return ;;
     --jobs) candidates="1 2 4 8" ;;
     --refinements) candidates="1 2 3 4 5" ;;
-    --set | --size | --merge | --region-array | --boundaries) return ;;
+    --set | --accept | --size | --merge | --region-array | --boundaries) return ;;
     *)
       case $command in
         "") candidates="$commands --help --version" ;;
         init) candidates="block hertz dam --directory --help" ;;
+        import) candidates="--directory --accept --quiet --help" ;;
         mesh) candidates="--size --merge --ignore-elements --region-array --boundaries --quiet --help" ;;
         info | schema) candidates="--help" ;;
         check) candidates="--set --quiet --json --help" ;;
@@ -40,6 +41,9 @@ _tribound()
 
   if [[ $command =~ ^(check|run|sweep|verify|study)$ && $current != -* && ! $previous =~ ^--(refinements|jobs)$ ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current")
+    compopt -o filenames 2>/dev/null
+  elif [[ $command == import && $current != -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -f -X '!*.inp' -- "$current"; compgen -d -- "$current")
     compopt -o filenames 2>/dev/null
   elif [[ $command == mesh && $current != -* ]]; then
     mapfile -t COMPREPLY < <(compgen -f -- "$current")
