@@ -146,7 +146,23 @@ Node::Table CaseMaker::contact(const PairGroups& pair)
   put(table, "friction", {std::string(coefficient > 0 ? "coulomb" : "none"), {}});
   if (coefficient > 0) put(table, "coefficient", {coefficient, {}});
   add_gap(pair, table);
+  if (find(table, "gap") == nullptr) add_shape(pair, table);
   return table;
+}
+
+void CaseMaker::add_shape(const PairGroups& pair, Node::Table& table)
+{
+  Node::Table shape;
+  for (const auto& [side, group] : {std::pair("slave", pair.slave), std::pair("master", pair.master)})
+  {
+    if (std::ranges::none_of(face_groups_.members(group), [&](Index face) { return faces_.is_curved(face); }))
+      continue;
+    const std::string& name = face_groups_.name(group);
+    put(shape, side, {name, {}});
+    if (find(shapes_, name) == nullptr)
+      put(shapes_, name, {Node::Table{{"mesh", {}, {std::string("order2"), {}}}}, {}});
+  }
+  if (!shape.empty()) put(table, "shape", {std::move(shape), {}});
 }
 
 void CaseMaker::add_gap(const PairGroups& pair, Node::Table& table)

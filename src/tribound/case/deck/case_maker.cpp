@@ -78,6 +78,7 @@ Node::Table CaseMaker::make()
     if (Node::Table table = boundary(part); !table.empty()) put(tables, part.name, {std::move(table), {}});
   if (!tables.empty()) put(document, "boundary", {std::move(tables), {}});
   if (!contacts.empty()) put(document, "contact", {std::move(contacts), {}});
+  if (!shapes_.empty()) put(document, "shape", {std::move(shapes_), {}});
   if (!times_.empty())
   {
     Node::Array steps;

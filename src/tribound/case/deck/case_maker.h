@@ -71,6 +71,8 @@ class CaseMaker
   [[nodiscard]] std::vector<std::pair<double, const Course*>> terms(const Groups::Part& part,
                                                                     DeckLoadKind kind, int component) const;
   [[nodiscard]] Node::Table contact(const PairGroups& pair);
+  /// Names the curved sides whose faces of second order are the true surfaces.
+  void add_shape(const PairGroups& pair, Node::Table& table);
   void add_gap(const PairGroups& pair, Node::Table& table);
   [[nodiscard]] Node sides(int group) const;
   void add_quantities(Node::Table& table) const;
@@ -88,6 +90,7 @@ class CaseMaker
   std::vector<int> group_of_load_{};  ///< -1: none
   std::vector<PairGroups> pairs_{};
   std::map<std::string, std::string> material_of_region_{};
+  Node::Table shapes_{};
   std::vector<double> times_{};  ///< empty: only the end of the last step counts
 };
 

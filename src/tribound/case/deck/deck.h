@@ -39,6 +39,7 @@ struct DeckPair
   std::string slave;
   std::string master;
   std::string interaction;         ///< empty: *TIE
+  std::string type{};              ///< "NODE TO SURFACE", ...
   std::optional<double> adjust{};  ///< distance within which nodes of the slave are moved onto the master
   std::optional<double> clearance{};
   std::optional<double> tolerance{};  ///< of a *TIE

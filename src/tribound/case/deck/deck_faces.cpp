@@ -145,6 +145,21 @@ Point<3> DeckFaces::normal(Index face) const
   return (normal.dot(corner(0) - centre) > 0 ? normal : Point<3>(-normal)).normalized();
 }
 
+bool DeckFaces::is_curved(Index face) const
+{
+  constexpr double tolerance = 1e-6;
+  const FaceNodes nodes = this->nodes(face);
+  if (!mesh::has_middles(nodes.type)) return false;
+  const mesh::ShapeTable& table = mesh::table_of(nodes.type.shape);
+  const auto x = [&](int i) -> const Point<3>& { return mesh_.nodes[nodes.nodes[i]]; };
+  const auto is_off = [&](int a, int b, int middle)
+  { return (x(middle) - (x(a) + x(b)) / 2).norm() > tolerance * (x(b) - x(a)).norm(); };
+  if (nodes.type.shape == Shape::segment) return is_off(0, 1, 2);
+  for (int e = 0; e < table.n_edges; ++e)
+    if (is_off(table.edges[e][0], table.edges[e][1], table.n_corners + e)) return true;
+  return false;
+}
+
 std::vector<std::vector<Index>> DeckFaces::connected(std::span<const Index> faces) const
 {
   std::map<Index, std::vector<Index>> faces_of_node;

@@ -40,6 +40,8 @@ class DeckFaces
   [[nodiscard]] std::vector<double> weights(Index face) const;
   /// The outward unit normal, at the centre.
   [[nodiscard]] Point<3> normal(Index face) const;
+  /// Whether the middle of an edge is off its ends' middle, by a millionth of its length.
+  [[nodiscard]] bool is_curved(Index face) const;
   /// Faces that share nodes are in one of the parts.
   [[nodiscard]] std::vector<std::vector<Index>> connected(std::span<const Index> faces) const;
   /// As triangles; in 2D as a segment, whose second end stands twice.

@@ -10,79 +10,54 @@
 namespace tribound::case_file
 {
 
+namespace
+{
+
+/// Output, tables of other analyses, and what only names or orders things.
+constexpr std::string_view without_effect =
+    "|NODE FILE|EL FILE|EL PRINT|ELEMENT OUTPUT|NODE OUTPUT|CONTACT FILE|CONTACT PRINT|"
+    "CONTACT OUTPUT|SECTION PRINT|FACE PRINT|OUTPUT|ENERGY OUTPUT|ENERGY PRINT|ENERGY FILE|PREPRINT|"
+    "MONITOR|RESTART|TIME POINTS|FILE FORMAT|FILTER|PRINT|CONTROLS|CONTACT CONTROLS|"
+    "SOLUTION TECHNIQUE|ASSEMBLY|END ASSEMBLY|END INSTANCE|CONDUCTIVITY|SPECIFIC HEAT|ORIENTATION|"
+    "PHYSICAL CONSTANTS|DEPVAR|SECTION CONTROLS|CONTACT DAMPING|";
+
+constexpr std::string_view other_analyses =
+    "|DYNAMIC|FREQUENCY|BUCKLE|HEAT TRANSFER|COUPLED TEMPERATURE-DISPLACEMENT|"
+    "UNCOUPLED TEMPERATURE-DISPLACEMENT|VISCO|MODAL DYNAMIC|STEADY STATE DYNAMICS|ELECTROMAGNETICS|"
+    "CFD|GREEN|SUBSTRUCTURE GENERATE|SENSITIVITY|COMPLEX FREQUENCY|CRACK PROPAGATION|MASS FLOW|";
+
+bool is_among(const std::string& keyword, std::string_view names)
+{
+  return names.find("|" + keyword + "|") != std::string_view::npos;
+}
+
+}  // namespace
+
 const std::map<std::string_view, DeckReader::Handler>& DeckReader::handlers()
 {
-  static const std::map<std::string_view, Handler> table = []
-  {
-    std::map<std::string_view, Handler> result = {
-        {"HEADING", &DeckReader::read_heading},
-        {"MATERIAL", &DeckReader::read_material},
-        {"ELASTIC", &DeckReader::read_elastic},
-        {"EXPANSION", &DeckReader::read_expansion},
-        {"DENSITY", &DeckReader::read_density},
-        {"SURFACE INTERACTION", &DeckReader::read_interaction},
-        {"SURFACE BEHAVIOR", &DeckReader::read_behaviour},
-        {"FRICTION", &DeckReader::read_friction},
-        {"CONTACT PAIR", &DeckReader::read_contact_pair},
-        {"TIE", &DeckReader::read_tie},
-        {"CLEARANCE", &DeckReader::read_clearance},
-        {"INITIAL CONDITIONS", &DeckReader::read_initial_conditions},
-        {"AMPLITUDE", &DeckReader::read_amplitude},
-        {"NODE PRINT", &DeckReader::read_node_print},
-        {"STEP", &DeckReader::begin_step},
-        {"STATIC", &DeckReader::read_static},
-        {"END STEP", &DeckReader::end_step},
-        {"BOUNDARY", &DeckReader::read_boundary},
-        {"CLOAD", &DeckReader::read_nodal_forces},
-        {"DLOAD", &DeckReader::read_element_loads},
-        {"DSLOAD", &DeckReader::read_surface_loads},
-        {"TEMPERATURE", &DeckReader::read_temperature}};
-    // Output, tables of other analyses, and what only names or orders things.
-    for (const char* name : {"NODE FILE",
-                             "EL FILE",
-                             "EL PRINT",
-                             "ELEMENT OUTPUT",
-                             "NODE OUTPUT",
-                             "CONTACT FILE",
-                             "CONTACT PRINT",
-                             "CONTACT OUTPUT",
-                             "SECTION PRINT",
-                             "FACE PRINT",
-                             "OUTPUT",
-                             "ENERGY OUTPUT",
-                             "ENERGY PRINT",
-                             "ENERGY FILE",
-                             "PREPRINT",
-                             "MONITOR",
-                             "RESTART",
-                             "TIME POINTS",
-                             "FILE FORMAT",
-                             "FILTER",
-                             "PRINT",
-                             "CONTROLS",
-                             "CONTACT CONTROLS",
-                             "SOLUTION TECHNIQUE",
-                             "ASSEMBLY",
-                             "END ASSEMBLY",
-                             "END INSTANCE",
-                             "CONDUCTIVITY",
-                             "SPECIFIC HEAT",
-                             "ORIENTATION",
-                             "PHYSICAL CONSTANTS",
-                             "USER ELEMENT OUTPUT",
-                             "DEPVAR",
-                             "SECTION CONTROLS",
-                             "CYCLIC SYMMETRY MODEL OUTPUT"})
-      result[name] = &DeckReader::pass_over;
-    // Other analyses than statics.
-    for (const char* name :
-         {"DYNAMIC", "FREQUENCY", "BUCKLE", "HEAT TRANSFER", "COUPLED TEMPERATURE-DISPLACEMENT",
-          "UNCOUPLED TEMPERATURE-DISPLACEMENT", "VISCO", "MODAL DYNAMIC", "STEADY STATE DYNAMICS",
-          "ELECTROMAGNETICS", "CFD", "GREEN", "SUBSTRUCTURE GENERATE", "SENSITIVITY", "COMPLEX FREQUENCY",
-          "CRACK PROPAGATION", "MASS FLOW"})
-      result[name] = &DeckReader::refuse;
-    return result;
-  }();
+  static const std::map<std::string_view, Handler> table = {
+      {"HEADING", &DeckReader::read_heading},
+      {"MATERIAL", &DeckReader::read_material},
+      {"ELASTIC", &DeckReader::read_elastic},
+      {"EXPANSION", &DeckReader::read_expansion},
+      {"DENSITY", &DeckReader::read_density},
+      {"SURFACE INTERACTION", &DeckReader::read_interaction},
+      {"SURFACE BEHAVIOR", &DeckReader::read_behaviour},
+      {"FRICTION", &DeckReader::read_friction},
+      {"CONTACT PAIR", &DeckReader::read_contact_pair},
+      {"TIE", &DeckReader::read_tie},
+      {"CLEARANCE", &DeckReader::read_clearance},
+      {"INITIAL CONDITIONS", &DeckReader::read_initial_conditions},
+      {"AMPLITUDE", &DeckReader::read_amplitude},
+      {"NODE PRINT", &DeckReader::read_node_print},
+      {"STEP", &DeckReader::begin_step},
+      {"STATIC", &DeckReader::read_static},
+      {"END STEP", &DeckReader::end_step},
+      {"BOUNDARY", &DeckReader::read_boundary},
+      {"CLOAD", &DeckReader::read_nodal_forces},
+      {"DLOAD", &DeckReader::read_element_loads},
+      {"DSLOAD", &DeckReader::read_surface_loads},
+      {"TEMPERATURE", &DeckReader::read_temperature}};
   return table;
 }
 
@@ -90,8 +65,16 @@ Deck DeckReader::read()
 {
   for (const Block& block : assembler_.model().blocks)
   {
-    const auto handler = handlers().find(block.keyword.name);
-    (this->*(handler == handlers().end() ? &DeckReader::drop : handler->second))(block);
+    const std::string& name = block.keyword.name;
+    const auto handler = handlers().find(name);
+    if (handler != handlers().end())
+      (this->*handler->second)(block);
+    else if (is_among(name, without_effect))
+      pass_over(block);
+    else if (is_among(name, other_analyses))
+      refuse(block);
+    else
+      drop(block);
   }
   if (in_step_)
     log_.refuse(deck_.steps.back().place, "STEP", "the step has no *END STEP", "is the deck complete?");
@@ -222,9 +205,9 @@ void DeckReader::read_behaviour(const Block& block)
                     "the surfaces are tied; the stiffness of the tie is dropped");
   }
   if (law == "HARD") return take(block, "contact is rigid: no surface penetrates another");
-  log_.add(
-      block.keyword.place, block.keyword.name, Fate::changed,
-      fmt::format("contact is rigid: no surface penetrates another; the stiffness ({}) is dropped", law));
+  log_.add(block.keyword.place, block.keyword.name, Fate::changed,
+           fmt::format("contact is rigid: no surface penetrates another; the stiffness ({}) is dropped{}",
+                       law, law == "EXPONENTIAL" ? ", whose pressure begins before the surfaces touch" : ""));
 }
 
 void DeckReader::read_friction(const Block& block)
@@ -248,6 +231,7 @@ void DeckReader::read_friction(const Block& block)
 void DeckReader::read_contact_pair(const Block& block)
 {
   const std::string interaction = required(block, "INTERACTION");
+  const std::string type = mesh::capitals(block.keyword.find("TYPE").value_or(""));
   std::optional<double> adjust;
   if (const auto given = block.keyword.find("ADJUST"))
   {
@@ -260,9 +244,8 @@ void DeckReader::read_contact_pair(const Block& block)
   {
     if (line.fields.size() < 2)
       assembler_.lines().fail(line.place, "a contact pair is two surfaces: \"slave, master\"");
-    deck_.pairs.push_back({line.place, line.fields[0], line.fields[1], interaction, adjust});
+    deck_.pairs.push_back({line.place, line.fields[0], line.fields[1], interaction, type, adjust});
   }
-  const std::string type = mesh::capitals(block.keyword.find("TYPE").value_or(""));
   log_.add(block.keyword.place, block.keyword.name, Fate::changed,
            fmt::format("contact on the undeformed surfaces by Nitsche's method{}",
                        type.empty() ? "" : fmt::format(" in place of TYPE={}", type)));
@@ -292,16 +275,20 @@ void DeckReader::read_clearance(const Block& block)
   const std::optional<double> value = mesh::number_of(required(block, "VALUE"));
   if (!value || !std::isfinite(*value)) assembler_.lines().fail(block.keyword.place, "VALUE is not a number");
   bool is_used = false;
+  bool is_ignored = false;
   for (DeckPair& pair : deck_.pairs)
     if (mesh::capitals(pair.slave) == slave && mesh::capitals(pair.master) == master)
     {
       pair.clearance = value;
       is_used = true;
+      is_ignored = pair.type.starts_with("NODE");
     }
   if (!is_used)
     return log_.refuse(block.keyword.place, "CLEARANCE",
                        fmt::format("there is no contact pair {}, {} so far", slave, master));
-  take(block, fmt::format("gap = {}", *value));
+  log_.add(block.keyword.place, "CLEARANCE", is_ignored ? Fate::changed : Fate::taken,
+           fmt::format("gap = {}{}", *value,
+                       is_ignored ? "; CalculiX ignores it for pairs of TYPE=NODE TO SURFACE" : ""));
 }
 
 void DeckReader::read_amplitude(const Block& block)
