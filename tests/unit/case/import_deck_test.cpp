@@ -244,6 +244,31 @@ TEST_F(ImportDeck, AdjustsAndClears)
   EXPECT_EQ(value(*config.contacts[0].contact.gap, 1), -1e-3);
 }
 
+TEST_F(ImportDeck, MakesRigidParts)
+{
+  const std::string reference = "*NODE\n99, .5, .5, 3.\n98, .5, .5, 3.\n";
+  const case_file::Config body = config_of(
+      import(reference + "*RIGID BODY, NSET=top, REF NODE=99, ROT NODE=98\n*BOUNDARY\n99, 1, 2\n98, 3, 3\n",
+             "*CLOAD\n99, 3, -7.\n98, 1, 2.\n"));
+  const case_file::RigidConfig& rigid = *boundary(body, "top").rigid;
+  EXPECT_EQ(value(rigid.force[2], 1), -7);
+  EXPECT_EQ(value(rigid.moment[0], 1), 2);
+  EXPECT_THAT(rigid.point, testing::ElementsAre(0.5, 0.5, 3));
+  EXPECT_THAT(rigid.fixed, testing::ElementsAre("x", "y", "rz"));
+
+  const std::string coupling = "*COUPLING, REF NODE=99, SURFACE=crown, CONSTRAINT NAME=c\n*KINEMATIC\n1, 3\n";
+  const case_file::Config moved = config_of(
+      import(reference + coupling, "*BOUNDARY\n99, 1, 2\n99, 3, 3, -.1\n99, 4, 5\n99, 6, 6, .01\n"));
+  const case_file::BoundaryConfig& crown = boundary(moved, "crown");
+  const Point<3> x(2, 5, 7);
+  EXPECT_NEAR(value(*crown.displacement[0], 1, x), -0.01 * 4.5, 1e-15);
+  EXPECT_NEAR(value(*crown.displacement[1], 1, x), 0.01 * 1.5, 1e-15);
+  EXPECT_EQ(value(*crown.displacement[2], 1, x), -0.1);
+
+  EXPECT_THAT(message_of([&] { return import(reference + coupling, "*BOUNDARY\n99, 3, 3, -.1\n"); }),
+              HasSubstr("z is given, and other motions are free"));
+}
+
 struct Refused
 {
   const char* model;

@@ -105,6 +105,16 @@ Node::Table CaseMaker::boundary(const Groups::Part& part) const
     traction.push_back(sum_of(forces, times_.empty()));
   }
   if (is_pulled) put(table, "traction", {std::move(traction), {}});
+  for (std::size_t i = 0; i < group_of_rigid_.size(); ++i)
+  {
+    if (!part.is_in(group_of_rigid_[i])) continue;
+    if (!table.empty())
+      log_.refuse(deck_.rigids[i].place, "RIGID BODY",
+                  fmt::format("{} has other supports or loads", deck_.rigids[i].target),
+                  "loads of a rigid body act at its reference node");
+    else
+      add_rigid(deck_.rigids[i], static_cast<Index>(i), table);
+  }
   return table;
 }
 

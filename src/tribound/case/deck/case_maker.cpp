@@ -30,13 +30,6 @@ bool is_on_faces(DeckLoadKind kind)
   return kind == DeckLoadKind::force || kind == DeckLoadKind::traction || kind == DeckLoadKind::pressure;
 }
 
-std::string as_factor(const Node& datum)
-{
-  const double* number = std::get_if<double>(&datum.value);
-  return number != nullptr ? fmt::format("{}", *number)
-                           : fmt::format("({})", std::get<std::string>(datum.value));
-}
-
 /// " + rho omega^2 (r - (r.a) a)_c", r from the given point of the axis; only the terms that are not 0.
 std::string rotation_text(const DeckLoad& load, const Point<3>& a, int c, double density, bool only_last)
 {
@@ -166,6 +159,8 @@ void CaseMaker::find_boundaries()
     const int slave = side(pair.slave);
     pairs_.push_back({&pair, interaction, slave, side(pair.master)});
   }
+  for (const DeckRigid& rigid : deck_.rigids)
+    group_of_rigid_.push_back(face_groups_.add(rigid.target, rigid.faces));
   for (std::size_t i = 0; i < deck_.loads.size(); ++i)
   {
     const DeckLoad& load = deck_.loads[i];

@@ -3,6 +3,7 @@
 /// @file case_maker.h
 /// The case and the mesh that a deck stands for.
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -67,6 +68,12 @@ class CaseMaker
   [[nodiscard]] const Course* temperature_of(const Groups::Part& region,
                                              const std::vector<DeckLoad>& loads) const;
   [[nodiscard]] Node::Table boundary(const Groups::Part& part) const;
+  /// The motion of a rigid body: `rigid`, or `displacement` where all of it is given.
+  void add_rigid(const DeckRigid& rigid, Index number, Node::Table& table) const;
+  [[nodiscard]] Node rigid_displacement(const DeckRigid& rigid,
+                                        const std::array<const Course*, 6>& motions) const;
+  /// The loads or motions of a rigid body by component; null where there is none.
+  [[nodiscard]] std::array<const Course*, 6> courses_of(Index rigid, DeckLoadKind kind) const;
   [[nodiscard]] Node displacement(const Groups::Part& part, bool& is_given) const;
   [[nodiscard]] std::vector<std::pair<double, const Course*>> terms(const Groups::Part& part,
                                                                     DeckLoadKind kind, int component) const;
@@ -88,6 +95,7 @@ class CaseMaker
   std::vector<Groups::Part> regions_{};
   std::vector<Groups::Part> boundaries_{};
   std::vector<int> group_of_load_{};  ///< -1: none
+  std::vector<int> group_of_rigid_{};
   std::vector<PairGroups> pairs_{};
   std::map<std::string, std::string> material_of_region_{};
   Node::Table shapes_{};

@@ -76,6 +76,13 @@ Node Course::datum(double factor, bool only_last) const
   return {formula_of(points_, factor), {}};
 }
 
+std::string as_factor(const Node& datum)
+{
+  const double* number = std::get_if<double>(&datum.value);
+  return number != nullptr ? fmt::format("{}", *number)
+                           : fmt::format("({})", std::get<std::string>(datum.value));
+}
+
 Node sum_of(const std::vector<std::pair<double, const Course*>>& terms, bool only_last)
 {
   double number = 0;

@@ -3,6 +3,7 @@
 /// @file course.h
 /// A load of a deck as it follows the time of the steps.
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,9 @@ class Course
  private:
   std::vector<Point> points_{};
 };
+
+/// A datum as a factor of a formula.
+[[nodiscard]] std::string as_factor(const Node& datum);
 
 /// The sum of several, each with its factor; 0 without any.
 [[nodiscard]] Node sum_of(const std::vector<std::pair<double, const Course*>>& terms, bool only_last);

@@ -45,6 +45,16 @@ struct DeckPair
   std::optional<double> tolerance{};  ///< of a *TIE
 };
 
+/// *RIGID BODY, *COUPLING with *KINEMATIC: faces that move with a reference node.
+struct DeckRigid
+{
+  mesh::InpPlace place;
+  std::string target;
+  std::vector<Index> faces;
+  Index reference;      ///< its node
+  Index rotation = -1;  ///< the node whose displacements are the rotations; -1: the reference node has them
+};
+
 enum class DeckLoadKind : char
 {
   displacement,  ///< of nodes, one component
@@ -53,7 +63,9 @@ enum class DeckLoadKind : char
   pressure,      ///< on faces
   gravity,       ///< on cells: acceleration; data: its direction
   rotation,      ///< on cells: square of the angular velocity; data: a point and the direction of the axis
-  temperature    ///< of nodes
+  temperature,   ///< of nodes
+  rigid_motion,  ///< members: the number of the rigid body; component 0 to 5: displacement, rotation
+  rigid_force    ///< the same for force and moment
 };
 
 struct DeckLoad
@@ -100,6 +112,7 @@ struct Deck
   std::vector<DeckMaterial> materials{};
   std::vector<DeckInteraction> interactions{};
   std::vector<DeckPair> pairs{};
+  std::vector<DeckRigid> rigids{};
   std::map<std::string, DeckAmplitude> amplitudes{};  ///< by name, in capitals
   std::vector<DeckLoad> loads{};
   std::vector<DeckLoad> initial_temperatures{};

@@ -56,7 +56,7 @@ std::vector<Index> faces_of_surface(mesh::InpAssembler& assembler, const DeckFac
 
 void DeckReader::read_nodal_forces(const Block& block)
 {
-  note_new(block, std::array{DeckLoadKind::force});
+  note_new(block, std::array{DeckLoadKind::force, DeckLoadKind::rigid_force});
   struct Forces
   {
     const Line* line = nullptr;
@@ -67,6 +67,8 @@ void DeckReader::read_nodal_forces(const Block& block)
   {
     if (line.fields.size() < 2)
       assembler_.lines().fail(line.place, "a line of *CLOAD: set or node, component, force");
+    const std::vector<Index> nodes = assembler_.nodes_named(line.fields[0], line.place);
+    if (apply_to_rigid(block, line, nodes)) continue;
     const bool is_single = mesh::integer_of(line.fields[0]).has_value();
     const std::optional<std::int64_t> component = mesh::integer_of(line.fields[1]);
     if (!component || *component < 1 || *component > faces_.dim())
@@ -74,7 +76,7 @@ void DeckReader::read_nodal_forces(const Block& block)
                               faces_.dim() == 3 ? "1, 2 or 3; solids take no moments" : "1 or 2");
     Forces& forces = sets[is_single ? "" : mesh::capitals(line.fields[0])];
     if (forces.line == nullptr) forces.line = &line;
-    for (const Index node : assembler_.nodes_named(line.fields[0], line.place))
+    for (const Index node : nodes)
       forces.of_node.try_emplace(node, Point<3>::Zero()).first->second[*component - 1] += number(line, 2);
   }
   for (const auto& [name, forces] : sets)

@@ -49,6 +49,10 @@ const std::map<std::string_view, DeckReader::Handler>& DeckReader::handlers()
       {"CLEARANCE", &DeckReader::read_clearance},
       {"INITIAL CONDITIONS", &DeckReader::read_initial_conditions},
       {"AMPLITUDE", &DeckReader::read_amplitude},
+      {"RIGID BODY", &DeckReader::read_rigid_body},
+      {"COUPLING", &DeckReader::read_coupling},
+      {"DISTRIBUTING", &DeckReader::read_distributing},
+      {"KINEMATIC", &DeckReader::read_kinematic},
       {"NODE PRINT", &DeckReader::read_node_print},
       {"STEP", &DeckReader::begin_step},
       {"STATIC", &DeckReader::read_static},
@@ -76,6 +80,7 @@ Deck DeckReader::read()
     else
       drop(block);
   }
+  if (coupling_ != nullptr) drop(*coupling_);
   if (in_step_)
     log_.refuse(deck_.steps.back().place, "STEP", "the step has no *END STEP", "is the deck complete?");
   if (deck_.steps.empty())

@@ -52,6 +52,10 @@ class DeckReader
   void read_clearance(const Block& block);
   void read_initial_conditions(const Block& block);
   void read_amplitude(const Block& block);
+  void read_rigid_body(const Block& block);
+  void read_coupling(const Block& block);
+  void read_distributing(const Block& block);
+  void read_kinematic(const Block& block);
   void read_node_print(const Block& block);
   void begin_step(const Block& block);
   void read_static(const Block& block);
@@ -65,6 +69,9 @@ class DeckReader
   void drop(const Block& block);
   void refuse(const Block& block);
 
+  /// Applies a line of *BOUNDARY or *CLOAD that is meant for a rigid body; false: it is not.
+  bool apply_to_rigid(const Block& block, const Line& line, std::span<const Index> nodes);
+  [[nodiscard]] Index node_of(const Block& block, std::string_view parameter);
   void fix(const Block& block, const Line& line, const std::string& target, std::vector<Index> nodes);
   void fix_components(const Block& block, const Line& line, const std::string& target,
                       const std::vector<Index>& nodes);
@@ -99,6 +106,7 @@ class DeckReader
   double thickness_;
   DeckLog& log_;
   Deck deck_{};
+  const Block* coupling_ = nullptr;  ///< the last *COUPLING, before what says of which kind it is
   bool in_step_ = false;
   std::set<std::string> cards_{};     ///< keywords of loads that the step has named
   std::set<DeckLoadKind> renewed_{};  ///< kinds of which OP=NEW ends what the step does not name

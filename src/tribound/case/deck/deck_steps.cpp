@@ -10,6 +10,18 @@
 namespace tribound::case_file
 {
 
+namespace
+{
+
+/// Values that replace each other, and are not added up.
+bool is_state(DeckLoadKind kind)
+{
+  return kind == DeckLoadKind::displacement || kind == DeckLoadKind::rigid_motion ||
+         kind == DeckLoadKind::temperature;
+}
+
+}  // namespace
+
 void DeckReader::begin_step(const Block& block)
 {
   if (in_step_) log_.refuse(block.keyword.place, "STEP", "the step before has no *END STEP");
@@ -65,8 +77,8 @@ void DeckReader::end_step(const Block& block)
 
 void DeckReader::end_load(DeckLoad& load, const DeckStep& step)
 {
-  if (load.kind == DeckLoadKind::displacement || load.kind == DeckLoadKind::temperature)
-    log_.refuse(step.place, load.kind == DeckLoadKind::displacement ? "BOUNDARY" : "TEMPERATURE",
+  if (is_state(load.kind))
+    log_.refuse(step.place, load.kind == DeckLoadKind::temperature ? "TEMPERATURE" : "BOUNDARY",
                 fmt::format("OP=NEW ends that of {} in this step; in a case it stays", load.target),
                 "import the steps before and after as two decks");
   load.is_active = false;
@@ -79,7 +91,7 @@ DeckLoad& DeckReader::load_on(DeckLoadKind kind, const Block& block, const mesh:
                               const std::string& target, std::vector<Index> members, int component,
                               std::vector<double> data)
 {
-  const bool adds_up = kind != DeckLoadKind::displacement && kind != DeckLoadKind::temperature;
+  const bool adds_up = !is_state(kind);
   for (DeckLoad& load : deck_.loads)
   {
     if (load.kind != kind || load.component != component || load.data != data || !load.is_active) continue;
@@ -109,8 +121,7 @@ void DeckReader::apply(DeckLoad& load, double value, const Block& block)
     assembler_.lines().fail(block.keyword.place,
                             fmt::format("there is no amplitude \"{}\" so far", amplitude),
                             "*AMPLITUDE, NAME=... stands before what uses it");
-  const bool adds_up = load.kind != DeckLoadKind::displacement && load.kind != DeckLoadKind::temperature;
-  const bool is_more = adds_up && load.is_in_step;
+  const bool is_more = !is_state(load.kind) && load.is_in_step;
   if (is_more && amplitude != load.amplitude)
     log_.refuse(block.keyword.place, block.keyword.name,
                 fmt::format("{} has this load twice in a step, with different amplitudes", load.target));
@@ -150,7 +161,7 @@ void DeckReader::note_new(const Block& block, std::span<const DeckLoadKind> kind
 
 void DeckReader::read_boundary(const Block& block)
 {
-  note_new(block, std::array{DeckLoadKind::displacement});
+  note_new(block, std::array{DeckLoadKind::displacement, DeckLoadKind::rigid_motion});
   for (const char* parameter : {"USER", "SUBMODEL", "FIXED", "LOADCASE", "TIMEDELAY"})
     if (block.keyword.find(parameter))
       return log_.drop(block.keyword.place, "BOUNDARY", fmt::format("{} has no counterpart", parameter));
@@ -163,6 +174,7 @@ void DeckReader::read_boundary(const Block& block)
     if (line.fields.size() < 2)
       assembler_.lines().fail(line.place, "a line of *BOUNDARY: set or node, first component, last, value");
     std::vector<Index> nodes = assembler_.nodes_named(line.fields[0], line.place);
+    if (apply_to_rigid(block, line, nodes)) continue;
     if (!mesh::integer_of(line.fields[0]))
     {
       fix(block, line, line.fields[0], std::move(nodes));
