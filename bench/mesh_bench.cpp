@@ -3,9 +3,11 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmsh.h>
 
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <random>
@@ -19,6 +21,7 @@
 #include "tribound/mesh/import/inp.h"
 #include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/simplices.h"
+#include "tribound/mesh/import/vtk.h"
 #include "tribound/mesh/mesh.h"
 
 namespace
@@ -176,6 +179,75 @@ void read_deck(benchmark::State& state)
   std::filesystem::remove(file);
 }
 
+/// The same cube as VTK's XML, in text or raw bytes behind it.
+std::filesystem::path write_large_vtu(int n, bool is_text)
+{
+  const auto file = std::filesystem::temp_directory_path() / "tribound_mesh_bench.vtu";
+  const auto node = [n](int i, int j, int k) { return i + (n + 1) * (j + (n + 1) * k); };
+  std::vector<double> points;
+  std::vector<std::int64_t> connectivity;
+  std::vector<std::int64_t> offsets;
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) points.insert(points.end(), {i / 3.0, j / 3.0, k / 3.0});
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+      {
+        for (const int z : {k, k + 1})
+          connectivity.insert(connectivity.end(),
+                              {node(i, j, z), node(i + 1, j, z), node(i + 1, j + 1, z), node(i, j + 1, z)});
+        offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+      }
+  const std::vector<std::uint8_t> types(offsets.size(), 12);
+  std::string appended = "_";
+  std::FILE* out = std::fopen(file.c_str(), "w");
+  const auto array = [&](const char* type, const char* name, int n_components, const auto& values)
+  {
+    fmt::print(out, "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" ", type, name,
+               n_components);
+    if (is_text)
+      fmt::print(out, "format=\"ascii\">{}</DataArray>\n", fmt::join(values, " "));
+    else
+      fmt::print(out, "format=\"appended\" offset=\"{}\"/>\n", appended.size() - 1);
+    const std::uint64_t size = values.size() * sizeof(values[0]);
+    appended.append(reinterpret_cast<const char*>(&size), sizeof(size));
+    appended.append(reinterpret_cast<const char*>(values.data()), size);
+  };
+  fmt::print(out,
+             "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\"><UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">",
+             points.size() / 3, offsets.size());
+  std::fputs("<Points>", out);
+  array("Float64", "Points", 3, points);
+  std::fputs("</Points><Cells>", out);
+  array("Int64", "connectivity", 1, connectivity);
+  array("Int64", "offsets", 1, offsets);
+  array("UInt8", "types", 1, types);
+  std::fputs("</Cells></Piece></UnstructuredGrid>", out);
+  if (!is_text) std::fputs("<AppendedData encoding=\"raw\">", out);
+  if (!is_text) std::fwrite(appended.data(), 1, appended.size(), out);
+  if (!is_text) std::fputs("</AppendedData>", out);
+  std::fputs("</VTKFile>", out);
+  std::fclose(out);
+  return file;
+}
+
+/// As read_deck.
+void read_vtu(benchmark::State& state)
+{
+  const std::filesystem::path file = write_large_vtu(static_cast<int>(state.range(0)), state.range(1) != 0);
+  std::size_t n_cells = 0;
+  for (auto _ : state)
+  {
+    std::vector<std::string> notes;
+    n_cells =
+        std::get<mesh::MeshData<3>>(mesh::make_simplicial(mesh::read_vtk(file, {}, notes)).data).cells.size();
+  }
+  state.counters["cells"] = static_cast<double>(n_cells);
+  std::filesystem::remove(file);
+}
+
 }  // namespace
 
 BENCHMARK(topology<2>)->Unit(benchmark::kMillisecond);
@@ -197,5 +269,6 @@ BENCHMARK(read_file)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(read_deck)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_vtu)->ArgNames({"n", "text"})->ArgsProduct({{100}, {0, 1}})->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();
