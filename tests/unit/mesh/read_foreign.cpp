@@ -1,13 +1,18 @@
-/// Reads the boxes of foreign_meshes.py: volumes, regions, boundary, the places of all nodes.
+/// Reads the boxes of foreign_meshes.py: volumes, regions, boundary, the places of all nodes; then damaged
+/// copies.
 ///
 /// Usage: mesh_read_foreign DIRECTORY
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <random>
 
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
@@ -36,7 +41,8 @@ void check_mesh(const mesh::Mesh<dim>& mesh, const std::filesystem::path& file)
 {
   std::map<std::string, double> measures;
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    measures["region " + mesh.region_names()[mesh.region(c)]] += mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
+    measures["region " + mesh.region_names()[mesh.region(c)]] +=
+        mesh::cell_map(mesh, c).det / (dim == 2 ? 2 : 6);
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
     if (facet.tag >= 0)
       measures["boundary " + mesh.boundary_names()[facet.tag]] +=
@@ -68,18 +74,48 @@ void check(const std::filesystem::path& file)
   }
 }
 
+/// Bytes changed, the end cut off: a mesh or a message.
+void check_damaged(const std::filesystem::path& file, std::mt19937& random)
+{
+  const auto below = [&](std::size_t n)
+  { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  std::ifstream in(file, std::ios::binary);
+  const std::string sound((std::istreambuf_iterator<char>(in)), {});
+  const std::filesystem::path damaged = file.parent_path() / ("damaged" + file.extension().string());
+  for (int k = 0; k < 4; ++k)
+  {
+    std::string text = sound;
+    for (std::size_t n = 1 + below(3); n > 0; --n)
+      text[below(text.size())] = static_cast<char>(below(2) == 0 ? 255 : below(256));
+    if (below(4) == 0) text.resize(1 + below(text.size()));
+    std::ofstream(damaged, std::ios::binary) << text;
+    try
+    {
+      (void)mesh::read_mesh(mesh::MeshFile{damaged});
+    }
+    catch (const InputError& error)
+    {
+      expect(!error.where().file.empty() && !error.problem().empty(), file, "damaged: no message");
+    }
+  }
+  std::filesystem::remove(damaged);
+}
+
 }  // namespace
 
 }  // namespace tribound
 
 int main(int, char** arguments)
 {
-  int n = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(arguments[1]))
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(arguments[1])) files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::mt19937 random(1);
+  for (const std::filesystem::path& file : files)
   {
-    tribound::check(entry.path());
-    ++n;
+    tribound::check(file);
+    tribound::check_damaged(file, random);
   }
-  fmt::print("{} files, {} failures\n", n, tribound::n_failures);
-  return n > 190 && tribound::n_failures == 0 ? 0 : 1;
+  fmt::print("{} files, {} failures\n", files.size(), tribound::n_failures);
+  return files.size() > 190 && tribound::n_failures == 0 ? 0 : 1;
 }
