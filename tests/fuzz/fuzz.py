@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Random trials of the program: valid cases judged from their results, damaged inputs, kills.
+"""Random trials of the program: valid cases judged from their results, damaged inputs, kills, damaged geometries.
 
     fuzz.py PROGRAM SECONDS [--kind KIND ...] [--seed N] [--count N] [--jobs N] [--keep DIRECTORY]
 
@@ -25,11 +25,12 @@ for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 import numpy as np  # noqa: E402
 
 import cases  # noqa: E402
+import geometries  # noqa: E402
 import inputs  # noqa: E402
 import kills  # noqa: E402
 
-TRIALS = {"cases": cases.trial, "inputs": inputs.trial, "kills": kills.trial}
-SHARES = {"cases": 6, "inputs": 12, "kills": 1}  # trials of each kind in turn
+TRIALS = {"cases": cases.trial, "inputs": inputs.trial, "kills": kills.trial, "geometries": geometries.trial}
+SHARES = {"cases": 6, "inputs": 12, "kills": 1, "geometries": 2}  # trials of each kind in turn
 
 
 @dataclass
