@@ -236,6 +236,7 @@ void CaseMaker::add_probes(Node::Table& table) const
     for (const Index node : nodes)
     {
       std::vector<Node> point;
+      point.reserve(faces_.dim());
       for (int i = 0; i < faces_.dim(); ++i) point.push_back({assembler_.mesh().nodes[node][i], {}});
       const std::string name = fmt::format("node {}", assembler_.mesh().node_numbers[node]);
       if (find(probes, name) == nullptr)

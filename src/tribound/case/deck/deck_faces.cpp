@@ -81,6 +81,7 @@ std::vector<double> shape_functions(const ElementType& type, double a, double b)
   constexpr std::array<std::array<int, 2>, 9> place = {
       {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {1, 2}, {2, 1}, {0, 2}, {2, 2}}};
   std::vector<double> result;
+  result.reserve(type.n_nodes);
   for (int i = 0; i < type.n_nodes; ++i)
     result.push_back(type.n_nodes == 4 ? linear(a)[place[i][0]] * linear(b)[place[i][1]]
                                        : quadratic(a)[place[i][0]] * quadratic(b)[place[i][1]]);

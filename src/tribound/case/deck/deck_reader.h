@@ -72,7 +72,7 @@ class DeckReader
   /// Applies a line of *BOUNDARY or *CLOAD that is meant for a rigid body; false: it is not.
   bool apply_to_rigid(const Block& block, const Line& line, std::span<const Index> nodes);
   [[nodiscard]] Index node_of(const Block& block, std::string_view parameter);
-  void fix(const Block& block, const Line& line, const std::string& target, std::vector<Index> nodes);
+  void fix(const Block& block, const Line& line, const std::string& target, const std::vector<Index>& nodes);
   void fix_components(const Block& block, const Line& line, const std::string& target,
                       const std::vector<Index>& nodes);
   void spread_forces(const Block& block, const Line& line, const std::string& target,

@@ -173,11 +173,11 @@ void DeckReader::read_boundary(const Block& block)
   {
     if (line.fields.size() < 2)
       assembler_.lines().fail(line.place, "a line of *BOUNDARY: set or node, first component, last, value");
-    std::vector<Index> nodes = assembler_.nodes_named(line.fields[0], line.place);
+    const std::vector<Index> nodes = assembler_.nodes_named(line.fields[0], line.place);
     if (apply_to_rigid(block, line, nodes)) continue;
     if (!mesh::integer_of(line.fields[0]))
     {
-      fix(block, line, line.fields[0], std::move(nodes));
+      fix(block, line, line.fields[0], nodes);
       continue;
     }
     auto& [first, pooled] = singles[{line.fields.begin() + 1, line.fields.end()}];
@@ -187,13 +187,13 @@ void DeckReader::read_boundary(const Block& block)
   for (auto& [_, single] : singles)
   {
     std::ranges::sort(single.second);
-    fix(block, *single.first, line_name(*single.first), std::move(single.second));
+    fix(block, *single.first, line_name(*single.first), single.second);
   }
   take(block, "displacements");
 }
 
 void DeckReader::fix(const Block& block, const Line& line, const std::string& target,
-                     std::vector<Index> nodes)
+                     const std::vector<Index>& nodes)
 {
   static const std::map<std::string, std::vector<int>> words = {
       {"ENCASTRE", {0, 1, 2}}, {"PINNED", {0, 1, 2}}, {"XSYMM", {0}}, {"YSYMM", {1}}, {"ZSYMM", {2}}};

@@ -63,7 +63,12 @@ ImportedDeck import_deck(const std::filesystem::path& deck, const std::string& m
   const Node::Table mesh_table = {{"file", {}, {mesh_name, {}}}};
   document.insert(document.begin(), {"mesh", {}, {mesh_table, {}}});
   if (const std::vector<std::string> outside = log.not_covered(); !outside.empty())
-    document.insert(document.begin(), {"not_covered", {}, {Node::Array(outside.begin(), outside.end()), {}}});
+  {
+    Node::Array texts;
+    texts.reserve(outside.size());
+    for (const std::string& text : outside) texts.push_back({text, {}});
+    document.insert(document.begin(), {"not_covered", {}, {std::move(texts), {}}});
+  }
   const std::string head =
       fmt::format("# Made by tribound import of {}. What became of it, line by line:\n#\n{}\n",
                   deck.filename().string(), log.table());
