@@ -138,7 +138,13 @@ TEST(Vtk, PiecesShareThePointsWithTheSameGlobalNumbers)
   first.points = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   const std::string shared = vtu({first, next_square("11 21 22 12")});
   EXPECT_EQ(plane(directory, shared).n_vertices(), 6);
+  // Numbers of a part of its own are not global.
+  std::string original = vtu({first, next_square("10 21 22 12")});
+  for (std::size_t at = 0; (at = original.find("GlobalPointIds")) != std::string::npos;)
+    original.replace(at, 14, "vtkOriginalPointIds");
   std::vector<std::string> notes;
+  EXPECT_EQ(mesh::read_vtk(directory.write("grid.vtu", original).path, {}, notes).nodes.size(), 7U);
+  notes.clear();
   Grid second = next_square("");
   second.point_data.clear();
   const auto apart = directory.write("grid.vtu", vtu({first, second})).path;

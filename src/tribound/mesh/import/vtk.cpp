@@ -26,8 +26,10 @@ namespace
 constexpr std::array<std::string_view, 14> usual_region_arrays = {
     "gmsh:physical", "medit:ref",   "cell_tags", "CellEntityIds", "attribute", "material", "MaterialID",
     "MaterialIDs",   "material_id", "EntityId",  "RegionId",      "region",    "regions",  "physical"};
-constexpr std::array<std::string_view, 4> global_number_arrays = {"GlobalPointIds", "GlobalNodeId",
-                                                                  "GlobalNodeIds", "vtkGlobalIds"};
+/// The last one, of DOLFINx, may be something else in files of ParaView: points at different places are then
+/// two.
+constexpr std::array<std::string_view, 5> global_number_arrays = {
+    "GlobalPointIds", "GlobalNodeId", "GlobalNodeIds", "vtkGlobalIds", "vtkOriginalPointIds"};
 
 /// A type of cells of one dimension, with the values of the region array.
 struct VtkBlock
@@ -149,14 +151,18 @@ void VtkReader::read_points(const VtkPiece& piece)
     if (global)
     {
       const auto [known, is_new] = node_of_global_.try_emplace(numbers[i], place_[i]);
-      if (!is_new && mesh_.nodes[known->second] != point)
+      const bool is_same = !is_new && mesh_.nodes[known->second] == point;
+      if (!is_new && !is_same && global->name != global_number_arrays.back())
         throw InputError(
             piece.where,
             fmt::format("points {} and {} have the global number {}, and are not at the same place",
                         mesh_.node_numbers[known->second], n_points_, numbers[i]),
             "are the parts of one mesh, and of one time?");
-      place_[i] = known->second;
-      if (!is_new) continue;
+      if (is_same)
+      {
+        place_[i] = known->second;
+        continue;
+      }
     }
     mesh_.nodes.push_back(point);
     mesh_.node_numbers.push_back(n_points_);
