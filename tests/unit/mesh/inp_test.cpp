@@ -334,6 +334,19 @@ TEST(Inp, CoincidentNodesOfARegionAreMergedIfAsked)
   EXPECT_EQ(mesh::read_imported(two, nullptr, 1, notes).nodes.size(), 16U) << "regions stay apart";
 }
 
+TEST(Inp, PlaneStressIsNoted)
+{
+  const Directory directory;
+  for (const std::string type : {"CPS3", "CPE3"})
+  {
+    std::vector<std::string> notes;
+    (void)mesh::read_mesh(
+        directory.write("deck.inp", "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT,TYPE=" + type + "\n1, 1,2,3\n"), {},
+        nullptr, &notes);
+    EXPECT_EQ(notes.size(), type == "CPS3" ? 1U : 0U);
+  }
+}
+
 TEST(Inp, IncludedFilesAreKnown)
 {
   const Directory directory;

@@ -253,9 +253,7 @@ Node CaseMaker::material(const Groups::Part& region) const
   put(table, "E", {*material->E, {}});
   put(table, "nu", {*material->nu, {}});
   if (material->alpha) put(table, "alpha", {*material->alpha, {}});
-  const bool is_plane_stress =
-      faces_.dim() == 2 && assembler_.elements()[0].elements->type_name.starts_with("CPS");
-  if (is_plane_stress) put(table, "plane", text_node("stress"));
+  if (!assembler_.plane_stress().empty()) put(table, "plane", text_node("stress"));
   return {std::move(table), {}};
 }
 

@@ -167,13 +167,24 @@ std::string InpAssembler::ignored() const
   return text;
 }
 
+std::string InpAssembler::plane_stress() const
+{
+  if (dim_ == 3) return {};
+  for (const InpPart& part : model_.parts)
+    for (const InpElements& elements : part.elements)
+      if (elements.family == InpFamily::plane && elements.type_name.starts_with("CPS"))
+        return fmt::format("the deck has elements of plane stress ({}), a case says so by plane = \"stress\"",
+                           elements.type_name);
+  return {};
+}
+
 ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
                       std::vector<std::string>& notes)
 {
   InpAssembler assembler(file, {.ignores_elements = ignores_elements});
   ImportedMesh mesh = assembler.assemble();
-  if (const std::string ignored = assembler.ignored(); !ignored.empty())
-    notes.push_back(fmt::format("{}: {}", file.string(), ignored));
+  for (const std::string& note : {assembler.ignored(), assembler.plane_stress()})
+    if (!note.empty()) notes.push_back(fmt::format("{}: {}", file.string(), note));
   return mesh;
 }
 

@@ -107,6 +107,8 @@ class InpAssembler
   ImportedMesh assemble();
   /// What has been left out, in words; empty: nothing.
   [[nodiscard]] std::string ignored() const;
+  /// That the deck means plane stress, which is not the default of a case; empty: it does not.
+  [[nodiscard]] std::string plane_stress() const;
 
   [[nodiscard]] const InpLines& lines() const { return lines_; }
   [[nodiscard]] const InpModel& model() const { return model_; }
