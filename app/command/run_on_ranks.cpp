@@ -102,6 +102,13 @@ ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const 
   return run(config, std::move(mesh), progress);
 }
 
+/// Boxes, of which every rank makes its own cells; where formulas make groups, they are shared out as files
+/// are.
+bool is_made_in_parts(const case_file::Config& config)
+{
+  return config.groups.empty() && mesh::n_box_cells(config.mesh).has_value();
+}
+
 /// `whole`: on the first rank the mesh or, for boxes, where each rank makes its own cells, a coarser one.
 template <int dim>
 ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
@@ -113,14 +120,16 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
   ranks.on_first([&] { first = std::make_shared<const Whole>(std::get<Whole>(*std::exchange(whole, {}))); });
   if (!checkpoint)
   {
-    Whole part = mesh::share_out<dim>(ranks, config.mesh, first.get());
+    Whole part = is_made_in_parts(config) ? mesh::share_out<dim>(ranks, config.mesh, first.get())
+                                          : mesh::share_out<dim>(ranks, first.get());
     return run(config, std::move(part), progress, std::move(first));
   }
   const io::CheckpointFacts& facts = checkpoint->facts;
   ranks.on_first(
       [&]
       {
-        const std::int64_t n_cells = mesh::n_box_cells(config.mesh).value_or(first->n_cells());
+        const std::int64_t n_cells =
+            is_made_in_parts(config) ? *mesh::n_box_cells(config.mesh) : first->n_cells();
         if (n_cells != facts.earlier.first_cells)
           throw InputError(first->source(),
                            fmt::format("has {} cells, but the run to restart began with {}", n_cells,
@@ -130,7 +139,7 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
   io::CheckpointCells<dim> read = io::read_checkpoint_cells<dim>(checkpoint->file, facts, ranks);
   mesh::Balanced<dim> balanced =
       mesh::restore<dim>(ranks, first.get(), std::move(read.cells), read.values, io::n_values_of_cell(facts),
-                         mesh::box_facets<dim>(ranks, config.mesh));
+                         is_made_in_parts(config) ? mesh::box_facets<dim>(ranks, config.mesh) : nullptr);
   const Restart restart{facts,
                         std::move(balanced.cells),
                         std::move(balanced.values),
@@ -157,7 +166,9 @@ ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::strin
       [&]
       {
         whole.emplace(read_mesh(config,
-                                is_alone ? config.mesh : mesh::coarser_box(config.mesh, most_to_look_at),
+                                is_alone || !is_made_in_parts(config)
+                                    ? config.mesh
+                                    : mesh::coarser_box(config.mesh, most_to_look_at),
                                 &stop_on_signals(), request.quiet));
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });

@@ -24,7 +24,7 @@ namespace tribound::app
                                              const std::atomic<bool>* stop, bool quiet)
 {
   std::vector<std::string> notes;
-  mesh::AnyMesh mesh = mesh::read_mesh(source, case_file::find_seams(config), stop, &notes);
+  mesh::AnyMesh mesh = mesh::read_mesh(source, case_file::find_seams(config), stop, &notes, config.groups);
   for (const std::string& note : notes)
     if (!quiet) fmt::print(stderr, "tribound: note: {}\n", note);
   return mesh;

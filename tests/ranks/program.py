@@ -306,6 +306,8 @@ shutil.rmtree(DIRECTORY, ignore_errors=True)
 LOOKED_AT = ["--set", "probe.line={ from = [0, 0], to = [2, 1], points = 9 }", "--set", "section.across={ point = [1, 0.5], normal = [1, 0.2] }", "--set",
              "section.along={ point = [0, 0.5], normal = [0, 1] }"]
 the_same_as_one("tresca", f"{EXAMPLES}/01_tresca_block/case.toml", *LOOKED_AT)
+the_same_as_one("groups", f"{EXAMPLES}/01_tresca_block/case.toml", "--set", "boundary.half={where='x < 1 + 1e-9', of='top', traction=[0, -0.2]}",
+                "--set", "material.soft={where='x > 1.4', E=0.5, nu=0.3}", "--set", "adapt.max_levels=2")
 the_same_as_one("coulomb", f"{EXAMPLES}/02_coulomb_block/case.toml", "--set", "degree=3")
 the_same_as_one("dam", f"{EXAMPLES}/05_dam/case.toml")
 the_same_as_one("dam3d", f"{EXAMPLES}/05_dam/case3d.toml", "--set", "adapt.max_levels=2", "--set", "solver.method=direct")

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "tribound/case/geometry_reader.h"
+#include "tribound/case/group_reader.h"
 #include "tribound/case/history_reader.h"
 #include "tribound/case/method_reader.h"
 #include "tribound/case/node.h"
@@ -180,6 +181,7 @@ Config read_document(const Node& document, std::string file)
   if (const Node* node = root.find("units")) config.units = read_units(*node);
   config.mesh = read_mesh_source(root.require("mesh"), case_directory);
   config.materials = read_materials(root.require("material"));
+  config.groups = read_groups(root.find("boundary"), root.require("material"));
   if (const Node* node = root.find("load")) config.loads = read_loads(*node);
   if (const Node* node = root.find("boundary")) config.boundaries = read_boundaries(*node);
   if (const Node* node = root.find("contact")) config.contacts = read_contacts(*node);

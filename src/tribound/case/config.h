@@ -18,6 +18,7 @@
 #include "tribound/case/geometry.h"
 #include "tribound/case/history.h"
 #include "tribound/io/record/facts.h"
+#include "tribound/mesh/formula_groups.h"
 #include "tribound/mesh/seams.h"
 #include "tribound/mesh/source.h"
 #include "tribound/problem/problem.h"
@@ -176,6 +177,7 @@ struct Config
   std::vector<std::string> not_covered;  ///< added to that of the certificate
   problem::Units units;  ///< of [units]
   mesh::MeshSource mesh;
+  std::vector<mesh::FormulaGroup> groups;  ///< that the mesh gets before anything is looked for in it
   std::vector<MaterialConfig> materials;
   std::vector<LoadConfig> loads;
   std::vector<BoundaryConfig> boundaries;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribound/case/geometry_reader.h"
+#include "tribound/case/group_reader.h"
 #include "tribound/case/interface_reader.h"
 #include "tribound/case/table_reader.h"
 
@@ -118,7 +119,7 @@ const Table& boundary_table()
               {"interface", keys_of(obstacle_interface_table())},
               {"slider", datum()},
               {"rigid", keys_of(rigid_table())}} +
-          slider_geometry_keys(),
+          slider_geometry_keys() + group_keys(),
       .relations = {{.key = "contact",
                      .excludes = {"displacement", "traction", "pressure", "spring", "interface", "slider",
                                   "rigid"}},
@@ -377,7 +378,8 @@ std::vector<BoundaryConfig> read_boundaries(const Node& node)
   const auto* table = std::get_if<Node::Table>(&node.value);
   if (table == nullptr) fail_type(node, "a table", "one table for each boundary, such as [boundary.top]");
   std::vector<BoundaryConfig> boundaries;
-  for (const Entry& entry : *table) boundaries.push_back(read_boundary(entry));
+  for (const Entry& entry : *table)
+    if (!gives_only_a_group(entry.node)) boundaries.push_back(read_boundary(entry));
   return boundaries;
 }
 

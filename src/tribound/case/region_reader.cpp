@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "tribound/case/group_reader.h"
+
 namespace tribound::case_file
 {
 
@@ -71,7 +73,9 @@ Table of_regions(const Table& table)
 
 const Table& material_table()
 {
-  static const Table table = of_regions(material_options().table());
+  static const Table region{.name = "material.NAME", .keys = material_options().table().keys + group_keys()};
+  static const Table table{
+      .name = "material", .keys = material_options().table().keys, .named = keys_of(region)};
   return table;
 }
 
@@ -92,7 +96,7 @@ std::vector<MaterialConfig> read_materials(const Node& node)
     materials.push_back(read_material(table, {}, plane));
   for (const Entry* entry : table.named())
     materials.push_back(
-        read_material(TableReader(entry->node, material_options().table()), entry->name, plane));
+        read_material(TableReader(entry->node, *material_table().named->table), entry->name, plane));
   return materials;
 }
 

@@ -105,11 +105,13 @@ void check_options(const MeshFile& source, const Format& format)
     fail("region_array", "it is for formats with arrays of cells");
 }
 
-AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& find_seams)
+AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& find_seams,
+                 std::span<const FormulaGroup> groups)
 {
   return std::visit(
       [&]<int dim>(MeshData<dim>& data) -> AnyMesh
       {
+        add_groups<dim>(data, groups);
         const Seams seams = find_seams ? find_seams(data.boundary_names) : Seams{};
         cut_open<dim>(data, seams.joints);
         data.interfaces.insert(data.interfaces.end(), seams.interfaces.begin(), seams.interfaces.end());
@@ -119,7 +121,7 @@ AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& fi
 }
 
 AnyMesh read_file(const MeshFile& file, const FindSeams& find_seams, const std::atomic<bool>* stop,
-                  std::vector<std::string>* notes)
+                  std::vector<std::string>* notes, std::span<const FormulaGroup> groups)
 {
   if (file.path.extension() == ".stl")
     throw InputError(
@@ -127,10 +129,10 @@ AnyMesh read_file(const MeshFile& file, const FindSeams& find_seams, const std::
         fmt::format("fill it once: tribound mesh {} {} --size 2", file.path.filename().string(),
                     std::filesystem::path(file.path).replace_extension(".msh").filename().string()));
   std::vector<std::string> said;
-  SimplicialMesh mesh = make_simplicial(read_imported(file, stop, default_patience, said));
+  SimplicialMesh mesh = make_simplicial(read_imported(file, stop, default_patience, said), !groups.empty());
   said.insert(said.end(), mesh.notes.begin(), mesh.notes.end());
   if (notes) *notes = std::move(said);
-  return verified(std::move(mesh.data), find_seams);
+  return verified(std::move(mesh.data), find_seams, groups);
 }
 
 }  // namespace
@@ -153,15 +155,15 @@ ImportedMesh read_imported(const MeshFile& source, const std::atomic<bool>* stop
 }
 
 AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const std::atomic<bool>* stop,
-                  std::vector<std::string>* notes)
+                  std::vector<std::string>* notes, std::span<const FormulaGroup> groups)
 {
-  if (const auto* file = std::get_if<MeshFile>(&source)) return read_file(*file, find_seams, stop, notes);
+  if (const auto* file = std::get_if<MeshFile>(&source))
+    return read_file(*file, find_seams, stop, notes, groups);
+  const auto finish = [&](auto data) { return verified(std::move(data), find_seams, groups); };
   if (const auto* box = std::get_if<BoxMesh>(&source))
-    return box->cells.size() == 3 ? verified(box_mesh<3>(*box), find_seams)
-                                  : verified(box_mesh<2>(*box), find_seams);
+    return box->cells.size() == 3 ? finish(box_mesh<3>(*box)) : finish(box_mesh<2>(*box));
   const auto& boxes = std::get<Boxes>(source);
-  return boxes.front().box.cells.size() == 3 ? verified(box_meshes<3>(boxes), find_seams)
-                                             : verified(box_meshes<2>(boxes), find_seams);
+  return boxes.front().box.cells.size() == 3 ? finish(box_meshes<3>(boxes)) : finish(box_meshes<2>(boxes));
 }
 
 }  // namespace tribound::mesh

@@ -4,10 +4,12 @@
 /// Meshes from files of all formats: one way from the file to the simplicial mesh.
 
 #include <atomic>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "tribound/mesh/formula_groups.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/mesh/import/imported_mesh.h"
 #include "tribound/mesh/import/simplices.h"
@@ -25,10 +27,11 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
 [[nodiscard]] ImportedMesh read_imported(const MeshFile& source, const std::atomic<bool>* stop,
                                          double patience, std::vector<std::string>& notes);
 
-/// The mesh that a case asks for: read, made simplicial, cut open, verified. An .stl, whose volume has to be
-/// filled first, is refused.
+/// The mesh that a case asks for: read, made simplicial, with its groups, cut open, verified. An .stl, whose
+/// volume has to be filled first, is refused.
 [[nodiscard]] AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams = {},
                                 const std::atomic<bool>* stop = nullptr,
-                                std::vector<std::string>* notes = nullptr);
+                                std::vector<std::string>* notes = nullptr,
+                                std::span<const FormulaGroup> groups = {});
 
 }  // namespace tribound::mesh

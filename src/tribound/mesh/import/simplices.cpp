@@ -8,6 +8,7 @@
 
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/mesh/import/cell_faces.h"
 #include "tribound/mesh/import/node_sets.h"
 #include "tribound/mesh/verify.h"
 
@@ -84,7 +85,7 @@ class Converter
  public:
   explicit Converter(ImportedMesh mesh) : mesh_(std::move(mesh)) {}
 
-  SimplicialMesh convert()
+  SimplicialMesh convert(bool all_middles)
   {
     data_.source = mesh_.source;
     if constexpr (dim == 2) check_plane();
@@ -98,6 +99,7 @@ class Converter
       first += block.size();
     }
     for (const FacetSet& set : mesh_.facet_sets) add_facets(set);
+    if (all_middles) add_all_middles();
     if (!mesh_.source.file.empty())
       for (std::string& note : notes_) note.insert(0, mesh_.source.file + ": ");
     return {std::move(data_), std::move(notes_)};
@@ -115,6 +117,7 @@ class Converter
   void check_shapes(const ElementBlock& block, std::size_t first_cell,
                     std::span<const Index> element_of_cell) const;
   void add_facets(const FacetSet& set);
+  void add_all_middles();
   void add_edge_nodes(const ElementBlock& block, std::span<const Index> element);
   /// The vertex numbers of the corners of an element, until the next call.
   [[nodiscard]] std::span<const Index> corners_of(const ShapeTable& table, std::span<const Index> element)
@@ -290,6 +293,19 @@ void Converter<dim>::add_facets(const FacetSet& set)
     }
 }
 
+/// Those of the facets of the boundary.
+template <int dim>
+void Converter<dim>::add_all_middles()
+{
+  if (!std::ranges::any_of(mesh_.cells, has_middles, &ElementBlock::type)) return;
+  const std::vector<char> all(mesh_.nodes.size(), 1);
+  for (const CellFace& face : CellFaces(mesh_.cells, all).outer())
+  {
+    const FaceNodes nodes = nodes_of(mesh_.cells, face);
+    if (has_middles(nodes.type)) add_edge_nodes({nodes.type}, nodes.span());
+  }
+}
+
 /// The nodes on the edges of a facet of second order, and on the edge that cuts a quadrilateral: the centre,
 /// where it has no node that of the surface through the other eight.
 template <int dim>
@@ -317,10 +333,11 @@ void Converter<dim>::add_edge_nodes(const ElementBlock& block, std::span<const I
 
 }  // namespace
 
-SimplicialMesh make_simplicial(ImportedMesh mesh)
+SimplicialMesh make_simplicial(ImportedMesh mesh, bool all_middles)
 {
   const bool is_solid = !mesh.cells.empty() && table_of(mesh.cells.front().type.shape).dim == 3;
-  return is_solid ? Converter<3>(std::move(mesh)).convert() : Converter<2>(std::move(mesh)).convert();
+  return is_solid ? Converter<3>(std::move(mesh)).convert(all_middles)
+                  : Converter<2>(std::move(mesh)).convert(all_middles);
 }
 
 }  // namespace tribound::mesh

@@ -26,8 +26,11 @@ struct SimplicialMesh
 /// Facets of second order leave their nodes as edge_nodes; the middle of the edge that cuts a quadrilateral
 /// facet is its centre.
 ///
+/// With `all_middles` the facets of the boundary leave them that are in no set, too: groups by formulas may
+/// take these.
+///
 /// Throws InputError, which names elements and nodes by their numbers in the file: inverted or degenerate
 /// cells, cells in no region or in two, a plane mesh that is not in z = 0.
-[[nodiscard]] SimplicialMesh make_simplicial(ImportedMesh mesh);
+[[nodiscard]] SimplicialMesh make_simplicial(ImportedMesh mesh, bool all_middles = false);
 
 }  // namespace tribound::mesh
