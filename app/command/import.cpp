@@ -44,7 +44,7 @@ void import_deck(const ImportRequest& request)
   const std::filesystem::path directory = request.directory;
   const std::filesystem::path case_file = directory / deck.stem().concat(".toml");
   const std::filesystem::path mesh_file = directory / deck.stem().concat(".msh");
-  if (deck.extension() != ".inp")
+  if (mesh::capitals(deck.extension().string()) != ".INP")
     throw InputError({.file = request.deck}, "is not an .inp",
                      "decks of CalculiX and Abaqus are imported; other meshes: [mesh] file = \"...\"");
   require_absent(case_file);

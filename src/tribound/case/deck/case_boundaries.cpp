@@ -77,9 +77,21 @@ Node CaseMaker::displacement(const Groups::Part& part, bool& is_given) const
     const auto courses = terms(part, DeckLoadKind::displacement, c);
     is_given = is_given || !courses.empty();
     if (std::ranges::any_of(courses, [&](const auto& term) { return !(*term.second == *courses[0].second); }))
-      log_.refuse(
-          {.file = 0, .line = 1}, "BOUNDARY",
-          fmt::format("boundary {}: component {} is given twice, with different values", part.name, c + 1));
+    {
+      std::string targets;
+      mesh::InpPlace place;
+      for (std::size_t i = 0; i < deck_.loads.size(); ++i)
+        if (const DeckLoad& load = deck_.loads[i]; load.kind == DeckLoadKind::displacement &&
+                                                   load.component == c && group_of_load_[i] >= 0 &&
+                                                   part.is_in(group_of_load_[i]))
+        {
+          targets += (targets.empty() ? "" : " and ") + load.target;
+          place = load.place;
+        }
+      log_.refuse(place, "BOUNDARY",
+                  fmt::format("component {} of {} is given twice on the same faces, with different values",
+                              c + 1, targets));
+    }
     components.push_back(courses.empty() ? Node{std::string("free"), {}}
                                          : courses[0].second->datum(1, times_.empty()));
   }
@@ -128,20 +140,60 @@ Node CaseMaker::sides(int group) const
   return {std::move(names), {}};
 }
 
+/// Ties of a deck bind what is within their tolerance, by default a fortieth of an element.
+double CaseMaker::reach_of_tie(const PairGroups& pair)
+{
+  const DeckPair& given = *pair.pair;
+  if (given.tolerance) return *given.tolerance;
+  double edges = 0;
+  std::size_t n = 0;
+  for (const Index face : face_groups_.members(pair.slave))
+    for (const auto& triangle : faces_.triangles(face))
+    {
+      edges += (triangle[1] - triangle[0]).norm();
+      ++n;
+    }
+  constexpr double share = 0.025;
+  const double reach = share * edges / static_cast<double>(n);
+  if (given.interaction.empty())
+  {
+    log_.add(given.place, "TIE", Fate::changed,
+             fmt::format("{} and {} are tied where they are within {:.3g}, {} of an edge", given.slave,
+                         given.master, reach, share));
+    return reach;
+  }
+  // Surfaces of PRESSURE-OVERCLOSURE=TIED are pulled together whatever is between them.
+  constexpr double rounding = 1e-6;
+  const DistanceFromFaces distance(faces_, face_groups_.members(pair.master));
+  for (const Index face : face_groups_.members(pair.slave))
+    for (const Index node : faces_.nodes(face).span())
+      if (given.clearance || given.adjust ||
+          std::abs(distance(faces_.point(node))) > rounding * reach / share)
+      {
+        log_.drop(given.place, "CONTACT PAIR",
+                  fmt::format("{} and {} are TIED with a gap, which the deck closes by force", given.slave,
+                              given.master),
+                  "surfaces that touch");
+        return reach;
+      }
+  return reach;
+}
+
 Node::Table CaseMaker::contact(const PairGroups& pair)
 {
+  const std::string keyword = pair.pair->interaction.empty() ? "TIE" : "CONTACT PAIR";
   Node::Table table;
   for (const auto& [key, group] : {std::pair("slave", pair.slave), std::pair("master", pair.master)})
   {
     Node names = sides(group);
     const auto* several = std::get_if<Node::Array>(&names.value);
     if (several != nullptr && several->empty())
-      log_.refuse(pair.pair->place, pair.interaction == nullptr ? "TIE" : "CONTACT PAIR",
+      log_.refuse(pair.pair->place, keyword,
                   fmt::format("all of {} is held or loaded", face_groups_.name(group)));
     put(table, key, std::move(names));
     for (const Groups::Part& part : boundaries_)
       if (part.is_in(group) && !boundary(part).empty())
-        log_.drop(pair.pair->place, "CONTACT PAIR",
+        log_.drop(pair.pair->place, keyword,
                   fmt::format("a part of {} is held or loaded, and does not touch: {}",
                               face_groups_.name(group), part.name),
                   "contact, supports and loads on separate faces");
@@ -149,7 +201,7 @@ Node::Table CaseMaker::contact(const PairGroups& pair)
   if (pair.interaction == nullptr)
   {
     put(table, "friction", {std::string("tied"), {}});
-    if (pair.pair->tolerance) put(table, "reach", {*pair.pair->tolerance, {}});
+    put(table, "reach", {reach_of_tie(pair), {}});
     return table;
   }
   const double coefficient = pair.interaction->coefficient;

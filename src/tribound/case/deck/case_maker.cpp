@@ -111,6 +111,9 @@ void CaseMaker::find_history()
     const double period = step.end - step.begin;
     const double n =
         has_friction ? std::clamp(std::ceil(period / step.increment - 1e-9), 1.0, most_increments) : 1.0;
+    if (has_friction && period > most_increments * step.increment * (1 + 1e-9))
+      log_.add(step.place, "STATIC", Fate::changed,
+               fmt::format("{} increments in place of {:.0f}", most_increments, period / step.increment));
     for (int k = 1; k <= static_cast<int>(n); ++k) times_.push_back(step.begin + period * k / n);
   }
   const double end = deck_.steps.back().end;
@@ -130,16 +133,38 @@ void CaseMaker::find_regions()
     {
       const std::string& set = model.parts[instance.part].element_sets.all[section.set].name;
       const std::string name = instance.name.empty() ? set : instance.name + "." + set;
-      material_of_region_[name] = section.material;
+      sections_[name] = section;
+      if (std::ranges::count(assembler_.mesh().cell_sets, name, &mesh::CellSet::name) == 0)
+        log_.refuse(section.place, section.keyword,
+                    fmt::format("the sections do not have every element once; {} has some of another", name),
+                    "one section for each element");
       log_.add(section.place, section.keyword, Fate::taken,
                fmt::format("region {} of material {}", name, section.material));
     }
+  check_plane(model);
   group_of_load_.assign(deck_.loads.size(), -1);
   for (std::size_t i = 0; i < deck_.loads.size(); ++i)
     if (const DeckLoad& load = deck_.loads[i];
         load.kind == DeckLoadKind::gravity || load.kind == DeckLoadKind::rotation)
       group_of_load_[i] = cell_groups_.add(load.target, load.members);
   regions_ = cell_groups_.parts();
+}
+
+/// A case knows one plane model for each region; a deck that has both is a mistake.
+void CaseMaker::check_plane(const mesh::InpModel& model)
+{
+  if (faces_.dim() == 3) return;
+  const mesh::InpElements* first = nullptr;
+  for (const mesh::InpPart& part : model.parts)
+    for (const mesh::InpElements& elements : part.elements)
+    {
+      if (elements.family != mesh::InpFamily::plane || elements.places.empty()) continue;
+      if (first == nullptr) first = &elements;
+      if (elements.type_name.starts_with("CPS") != first->type_name.starts_with("CPS"))
+        log_.refuse(elements.places[0], "ELEMENT",
+                    fmt::format("{} beside {}: plane stress and plane strain in one deck", elements.type_name,
+                                first->type_name));
+    }
 }
 
 void CaseMaker::find_boundaries()
@@ -220,6 +245,7 @@ void CaseMaker::add_faces_across(const DeckLoad& load, const std::vector<char>& 
     is_prism = is_prism && (along > 1 - tolerance || along < tolerance);
   }
   sort_and_unite(faces);
+  is_prism = is_prism && are_corners_on(faces, is_whole);
   const std::string what =
       fmt::format("{}: component {} of all nodes of a body", load.target, load.component + 1);
   if (is_prism)
@@ -229,12 +255,25 @@ void CaseMaker::add_faces_across(const DeckLoad& load, const std::vector<char>& 
     log_.drop(load.place, "BOUNDARY", what + " is given, inside, too", "a case holds faces");
 }
 
+bool CaseMaker::are_corners_on(const std::vector<Index>& faces, const std::vector<char>& is_whole) const
+{
+  std::vector<char> is_on(body_.size(), 0);
+  for (const Index face : faces)
+    for (const Index node : faces_.nodes(face).span()) is_on[node] = 1;
+  for (const mesh::ElementBlock& block : assembler_.mesh().cells)
+    for (std::size_t e = 0; e < block.size(); ++e)
+      for (const Index node : block.element(e).first(mesh::table_of(block.type.shape).n_corners))
+        if (is_whole[body_[node]] != 0 && is_on[node] == 0) return false;
+  return true;
+}
+
 const DeckMaterial* CaseMaker::material_of(const std::string& region) const
 {
-  const auto name = material_of_region_.find(region);
-  if (name == material_of_region_.end()) return nullptr;
-  const auto found = std::ranges::find_if(deck_.materials, [&](const DeckMaterial& m)
-                                          { return mesh::capitals(m.name) == mesh::capitals(name->second); });
+  const auto section = sections_.find(region);
+  if (section == sections_.end()) return nullptr;
+  const auto found =
+      std::ranges::find_if(deck_.materials, [&](const DeckMaterial& m)
+                           { return mesh::capitals(m.name) == mesh::capitals(section->second.material); });
   return found == deck_.materials.end() ? nullptr : &*found;
 }
 
@@ -244,8 +283,8 @@ Node CaseMaker::material(const Groups::Part& region) const
   const DeckMaterial* material = material_of(set);
   if (material == nullptr || !material->E || !material->nu)
   {
-    log_.refuse({.file = 0, .line = 1}, "SOLID SECTION",
-                fmt::format("region {} has no elastic material", set),
+    log_.refuse(sections_.contains(set) ? sections_.at(set).place : mesh::InpPlace{.line = 1},
+                "SOLID SECTION", fmt::format("region {} has no elastic material", set),
                 "*SOLID SECTION, ELSET=..., MATERIAL=... and *MATERIAL with *ELASTIC");
     return {Node::Table{}, {}};
   }

@@ -54,11 +54,14 @@ class CaseMaker
 
   void find_history();
   void find_regions();
+  void check_plane(const mesh::InpModel& model);
   void find_boundaries();
   [[nodiscard]] std::vector<Index> faces_of_displacement(const DeckLoad& load);
   /// The faces of bodies all of whose nodes are held in one direction that lie across it.
   void add_faces_across(const DeckLoad& load, const std::vector<char>& is_whole, std::vector<Index>& faces);
 
+  /// Whether all corners of these bodies lie on the faces.
+  [[nodiscard]] bool are_corners_on(const std::vector<Index>& faces, const std::vector<char>& is_whole) const;
   [[nodiscard]] const DeckMaterial* material_of(const std::string& region) const;
   [[nodiscard]] Node material(const Groups::Part& region) const;
   [[nodiscard]] Node::Table load(const Groups::Part& region) const;
@@ -80,6 +83,7 @@ class CaseMaker
   [[nodiscard]] Node::Table contact(const PairGroups& pair);
   /// Names the curved sides whose faces of second order are the true surfaces.
   void add_shape(const PairGroups& pair, Node::Table& table);
+  [[nodiscard]] double reach_of_tie(const PairGroups& pair);
   void add_gap(const PairGroups& pair, Node::Table& table);
   [[nodiscard]] Node sides(int group) const;
   void add_quantities(Node::Table& table) const;
@@ -97,7 +101,7 @@ class CaseMaker
   std::vector<int> group_of_load_{};  ///< -1: none
   std::vector<int> group_of_rigid_{};
   std::vector<PairGroups> pairs_{};
-  std::map<std::string, std::string> material_of_region_{};
+  std::map<std::string, mesh::InpSection> sections_{};  ///< by the name of the region
   Node::Table shapes_{};
   std::vector<double> times_{};  ///< empty: only the end of the last step counts
 };

@@ -23,6 +23,7 @@ class DeckFaces
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
   [[nodiscard]] int dim() const { return dim_; }
   [[nodiscard]] mesh::FaceNodes nodes(Index face) const { return mesh::nodes_of(mesh_.cells, faces_[face]); }
+  [[nodiscard]] const Point<3>& point(Index node) const { return mesh_.nodes[node]; }
   /// Of the element, in the file.
   [[nodiscard]] std::int64_t label(Index face) const
   {

@@ -61,6 +61,7 @@ void DeckReader::read_nodal_forces(const Block& block)
   {
     const Line* line = nullptr;
     std::map<Index, Point<3>> of_node{};
+    std::array<bool, 3> is_named{};
   };
   std::map<std::string, Forces> sets;  ///< nodes given one by one under ""
   for (const Line& line : block.lines)
@@ -76,16 +77,17 @@ void DeckReader::read_nodal_forces(const Block& block)
                               faces_.dim() == 3 ? "1, 2 or 3; solids take no moments" : "1 or 2");
     Forces& forces = sets[is_single ? "" : mesh::capitals(line.fields[0])];
     if (forces.line == nullptr) forces.line = &line;
+    forces.is_named[*component - 1] = true;
     for (const Index node : nodes)
       forces.of_node.try_emplace(node, Point<3>::Zero()).first->second[*component - 1] += number(line, 2);
   }
   for (const auto& [name, forces] : sets)
     spread_forces(block, *forces.line, name.empty() ? line_name(*forces.line) : forces.line->fields[0],
-                  forces.of_node);
+                  forces.of_node, forces.is_named);
 }
 
 void DeckReader::spread_forces(const Block& block, const Line& line, const std::string& target,
-                               const std::map<Index, Point<3>>& forces)
+                               const std::map<Index, Point<3>>& forces, const std::array<bool, 3>& is_named)
 {
   const SpreadForces spread_out = spread(faces_, forces);
   if (!spread_out.lone_nodes.empty())
@@ -98,10 +100,16 @@ void DeckReader::spread_forces(const Block& block, const Line& line, const std::
     const Point<3> traction = part.traction / thickness_;
     const std::string text = fmt::format("{}: traction ({:.6g}, {:.6g}, {:.6g}) on an area of {:.6g}", target,
                                          traction[0], traction[1], traction[2], part.area * thickness_);
-    log_.add(line.place, "CLOAD", part.is_exact ? Fate::taken : Fate::changed,
-             text + (part.is_exact ? "" : ": the sum of the forces spread evenly, not as they were given"));
+    const std::string spread_text = text + ": the sum of the forces spread evenly, not as they were given";
+    if (part.is_exact)
+      log_.add(line.place, "CLOAD", Fate::taken, text);
+    else if (part.keeps_resultant)
+      log_.add(line.place, "CLOAD", Fate::changed, spread_text);
+    else
+      log_.drop(line.place, "CLOAD", spread_text + "; their moment, or what cancels, is lost",
+                "a traction that varies, or a boundary that is rigid (boundary.NAME.rigid)");
     for (int c = 0; c < faces_.dim(); ++c)
-      if (traction[c] != 0 || std::ranges::any_of(forces, [&](const auto& f) { return f.second[c] != 0; }))
+      if (is_named[c])
         apply(load_on(DeckLoadKind::force, block, line.place, target, part.faces, c), traction[c], block);
   }
 }
@@ -118,8 +126,17 @@ void DeckReader::read_element_loads(const Block& block)
 {
   note_new(block, distributed_loads);
   // Elements given one by one are taken together where the load agrees.
-  std::map<std::pair<std::string, std::string>, std::pair<const Line*, std::vector<mesh::FaceNodes>>>
-      pressures;
+  std::map<std::string, std::pair<const Line*, std::vector<mesh::FaceNodes>>> singles;
+  const auto press =
+      [&](const Line& line, const std::string& target, const std::vector<mesh::FaceNodes>& faces)
+  {
+    std::vector<Index> members = outer(faces, line.place);
+    if (members.size() != faces.size())
+      log_.refuse(line.place, "DLOAD", "a face of an element has the load twice", "one line with the sum");
+    apply(load_on(DeckLoadKind::pressure, block, line.place, target, std::move(members)), number(line, 2),
+          block);
+    log_.add(line.place, "DLOAD", Fate::taken, fmt::format("{}: pressure", target));
+  };
   for (const Line& line : block.lines)
   {
     const std::string label = mesh::capitals(field(line, 1));
@@ -135,21 +152,19 @@ void DeckReader::read_element_loads(const Block& block)
                 "P1 to P6, GRAV and CENTRIF can");
       continue;
     }
-    const bool is_single = mesh::integer_of(line.fields[0]).has_value();
-    const std::string target = is_single ? "" : fmt::format("{}.{}", line.fields[0], label);
-    auto& [first, faces] = pressures[{target, field(line, 2)}];
-    if (first == nullptr) first = &line;
+    std::vector<mesh::FaceNodes> faces;
     for (const Index e : assembler_.elements_named(line.fields[0], line.place))
       faces.push_back(assembler_.face_of(assembler_.elements()[e], label[1] - '1', line.place));
+    if (!mesh::integer_of(line.fields[0]))
+    {
+      press(line, fmt::format("{}.{}", line.fields[0], label), faces);
+      continue;
+    }
+    auto& [first, all] = singles[field(line, 2)];
+    if (first == nullptr) first = &line;
+    all.insert(all.end(), faces.begin(), faces.end());
   }
-  for (const auto& [key, pressure] : pressures)
-  {
-    const Line& line = *pressure.first;
-    const std::string target = key.first.empty() ? line_name(line) : key.first;
-    apply(load_on(DeckLoadKind::pressure, block, line.place, target, outer(pressure.second, line.place)),
-          number(line, 2), block);
-    log_.add(line.place, "DLOAD", Fate::taken, fmt::format("{}: pressure", target));
-  }
+  for (const auto& [_, single] : singles) press(*single.first, line_name(*single.first), single.second);
 }
 
 void DeckReader::read_acceleration(const Block& block, const Line& line, const std::string& label)
@@ -158,15 +173,19 @@ void DeckReader::read_acceleration(const Block& block, const Line& line, const s
   for (const Index e : assembler_.elements_named(line.fields[0], line.place))
     if (const auto& element = assembler_.elements()[e]; element.is_cell) cells.push_back(element.number);
   sort_and_unite(cells);
+  if (cells.empty()) assembler_.lines().fail(line.place, fmt::format("\"{}\" has no cells", line.fields[0]));
   const bool is_gravity = label == "GRAV";
   const std::size_t n_data = is_gravity ? 3 : 6;
   std::vector<double> data(n_data);
   for (std::size_t i = 0; i < n_data; ++i) data[i] = number(line, 3 + i);
-  const double* axis = data.data() + (is_gravity ? 0 : 3);
-  if (!(Point<3>(axis[0], axis[1], axis[2]).norm() > 0))
-    assembler_.lines().fail(line.place, fmt::format("{} has no direction", label),
+  double* const axis = data.data() + (is_gravity ? 0 : 3);
+  const Point<3> direction(axis[0], axis[1], axis[2]);
+  const bool is_out_of_plane = is_gravity ? axis[2] != 0 : axis[0] != 0 || axis[1] != 0;
+  if (!(direction.norm() > 0) || (faces_.dim() == 2 && is_out_of_plane))
+    assembler_.lines().fail(line.place, fmt::format("{} has no direction in which it can act", label),
                             is_gravity ? "Eall, GRAV, 9.81, 0, 0, -1"
                                        : "Eall, CENTRIF, omega^2, point (3), direction of the axis (3)");
+  for (int i = 0; i < 3; ++i) axis[i] /= direction.norm();  // only the direction counts
   apply(load_on(is_gravity ? DeckLoadKind::gravity : DeckLoadKind::rotation, block, line.place,
                 line.fields[0], std::move(cells), 0, std::move(data)),
         number(line, 2), block);
@@ -193,7 +212,9 @@ void DeckReader::read_surface_loads(const Block& block)
             block);
       continue;
     }
-    const Point<3> direction = Point<3>(number(line, 3), number(line, 4), number(line, 5)).normalized();
+    const Point<3> given(number(line, 3), number(line, 4), number(line, 5));
+    if (!(given.norm() > 0)) assembler_.lines().fail(line.place, "TRVEC has no direction");
+    const Point<3> direction = given.normalized();
     for (int c = 0; c < faces_.dim(); ++c)
       apply(load_on(DeckLoadKind::traction, block, line.place, line.fields[0], faces, c),
             number(line, 2) * direction[c], block);
@@ -204,30 +225,44 @@ void DeckReader::read_surface_loads(const Block& block)
 void DeckReader::read_temperature(const Block& block)
 {
   note_new(block, std::array{DeckLoadKind::temperature});
-  if (block.keyword.find("FILE") || block.keyword.find("USER"))
-    return log_.drop(block.keyword.place, "TEMPERATURE", "temperatures from other results are not read");
-  std::map<std::string, std::pair<const Line*, std::vector<Index>>> of_value;
+  constexpr std::size_t most = 1000;
+  struct Group
+  {
+    const Line* line;
+    std::vector<Index> nodes{};
+  };
+  std::vector<Group> groups;  // in the order of the lines: the last one counts
   for (const Line& line : block.lines)
   {
     const std::vector<Index> nodes = assembler_.nodes_named(field(line, 0), line.place);
-    auto& [first, all] = of_value[field(line, 1)];
-    if (first == nullptr) first = &line;
-    all.insert(all.end(), nodes.begin(), nodes.end());
+    if (groups.empty() || field(*groups.back().line, 1) != field(line, 1)) groups.push_back({&line});
+    groups.back().nodes.insert(groups.back().nodes.end(), nodes.begin(), nodes.end());
+    if (groups.size() > most)
+      return log_.drop(block.keyword.place, "TEMPERATURE", "the temperature varies from node to node",
+                       "a formula in load.NAME.temperature of the case");
   }
-  for (auto& [_, temperature] : of_value)
+  for (Group& group : groups)
   {
-    auto& [line, nodes] = temperature;
-    sort_and_unite(nodes);
-    if (nodes.empty()) continue;
-    double before = 0;
-    for (const DeckLoad& initial : deck_.initial_temperatures)
-      if (std::ranges::binary_search(initial.members, nodes.at(0))) before = initial.course.last();
-    DeckLoad& load =
-        load_on(DeckLoadKind::temperature, block, line->place, field(*line, 0), std::move(nodes));
-    if (load.course.points().empty()) load.course.add(0, before);
-    apply(load, number(*line, 1), block);
+    sort_and_unite(group.nodes);
+    std::map<double, std::vector<Index>> nodes_of_initial;
+    for (const Index node : group.nodes) nodes_of_initial[initial_temperature(node)].push_back(node);
+    for (auto& [initial, nodes] : nodes_of_initial)
+    {
+      DeckLoad& load = load_on(DeckLoadKind::temperature, block, group.line->place, field(*group.line, 0),
+                               std::move(nodes));
+      if (load.course.points().empty()) load.course.add(0, initial);
+      apply(load, number(*group.line, 1), block);
+    }
   }
   take(block, "temperature");
+}
+
+double DeckReader::initial_temperature(Index node) const
+{
+  double result = 0;
+  for (const DeckLoad& initial : deck_.initial_temperatures)
+    if (std::ranges::binary_search(initial.members, node)) result = initial.course.last();
+  return result;
 }
 
 void DeckReader::read_initial_conditions(const Block& block)

@@ -8,9 +8,18 @@
 #include <filesystem>
 
 #include "tribound/base/error.h"
+#include "tribound/mesh/import/file_text.h"
 
 namespace tribound::case_file
 {
+
+std::string printable(std::string text)
+{
+  if (mesh::is_utf8(text)) return text;
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+  return text;
+}
 
 void DeckLog::add(const mesh::InpPlace& place, const std::string& keyword, Fate fate, const std::string& text)
 {
@@ -21,7 +30,7 @@ void DeckLog::add(const mesh::InpPlace& place, const std::string& keyword, Fate 
                                                      other.place.line == place.line && other.fate == fate &&
                                                      other.keyword == keyword && other.text == text;
                                             });
-  if (!is_known) remarks_.push_back({place, keyword, fate, text});
+  if (!is_known) remarks_.push_back({place, printable(keyword), fate, printable(text)});
 }
 
 void DeckLog::refuse(const mesh::InpPlace& place, const std::string& keyword, const std::string& text,

@@ -28,6 +28,9 @@ struct DeckRemark
   std::string text;
 };
 
+/// Text of a deck as it can stand in a case: question marks for what is not UTF-8, or no text at all.
+[[nodiscard]] std::string printable(std::string text);
+
 /// Collects remarks and problems. Keeps a reference to the lines.
 class DeckLog
 {

@@ -33,6 +33,50 @@ bool is_among(const std::string& keyword, std::string_view names)
 
 }  // namespace
 
+namespace
+{
+
+/// The parameters that are dealt with, or change nothing; keywords that are not here may have any.
+const std::map<std::string_view, std::string_view>& known_parameters()
+{
+  static const std::map<std::string_view, std::string_view> table = {
+      {"ELASTIC", "|TYPE|"},
+      {"EXPANSION", "|TYPE|ZERO|"},
+      {"DENSITY", "|"},
+      {"SURFACE INTERACTION", "|NAME|"},
+      {"SURFACE BEHAVIOR", "|PRESSURE-OVERCLOSURE|"},
+      {"FRICTION", "|"},
+      {"CONTACT PAIR", "|INTERACTION|TYPE|ADJUST|SMALLSLIDING|"},
+      {"TIE", "|NAME|POSITIONTOLERANCE|ADJUST|TYPE|"},
+      {"CLEARANCE", "|MASTER|SLAVE|VALUE|"},
+      {"INITIAL CONDITIONS", "|TYPE|"},
+      {"AMPLITUDE", "|NAME|TIME|SHIFTX|SHIFTY|DEFINITION|"},
+      {"STEP", "|NAME|INC|NLGEOM|AMPLITUDE|PERTURBATION|UNSYMM|"},
+      {"STATIC", "|SOLVER|DIRECT|RIKS|"},
+      {"BOUNDARY", "|OP|AMPLITUDE|TYPE|"},
+      {"CLOAD", "|OP|AMPLITUDE|"},
+      {"DLOAD", "|OP|AMPLITUDE|"},
+      {"DSLOAD", "|OP|AMPLITUDE|"},
+      {"TEMPERATURE", "|OP|AMPLITUDE|"},
+      {"RIGID BODY", "|NSET|ELSET|REFNODE|ROTNODE|"},
+      {"COUPLING", "|REFNODE|SURFACE|CONSTRAINTNAME|ORIENTATION|"},
+      {"KINEMATIC", "|"}};
+  return table;
+}
+
+}  // namespace
+
+void DeckReader::check_parameters(const Block& block)
+{
+  const auto known = known_parameters().find(block.keyword.name);
+  if (known == known_parameters().end()) return;
+  for (const auto& [name, value] : block.keyword.parameters)
+    if (!is_among(name, known->second))
+      log_.drop(block.keyword.place, block.keyword.name,
+                fmt::format("the parameter {}{} has no counterpart here, and may change the answer", name,
+                            value.empty() ? "" : "=" + value));
+}
+
 const std::map<std::string_view, DeckReader::Handler>& DeckReader::handlers()
 {
   static const std::map<std::string_view, Handler> table = {
@@ -72,7 +116,10 @@ Deck DeckReader::read()
     const std::string& name = block.keyword.name;
     const auto handler = handlers().find(name);
     if (handler != handlers().end())
+    {
+      check_parameters(block);
       (this->*handler->second)(block);
+    }
     else if (is_among(name, without_effect))
       pass_over(block);
     else if (is_among(name, other_analyses))
@@ -121,6 +168,10 @@ std::string DeckReader::line_name(const Line& line) const
 
 void DeckReader::pass_over(const Block& block)
 {
+  const std::string& name = block.keyword.name;
+  if (name == "NODE PRINT" || name == "SECTION PRINT" || name == "CONTACT PRINT")
+    return log_.add(block.keyword.place, name, Fate::left_out,
+                    "the certificate has the reactions of all supports, and contact forces as quantities");
   log_.add(block.keyword.place, block.keyword.name, Fate::left_out, "nothing in the answer depends on it");
 }
 
@@ -138,7 +189,7 @@ void DeckReader::refuse(const Block& block)
 void DeckReader::read_heading(const Block& block)
 {
   if (block.lines.empty() || !deck_.title.empty()) return;
-  deck_.title = fmt::format("{}", fmt::join(block.lines[0].fields, ", "));
+  deck_.title = printable(fmt::format("{}", fmt::join(block.lines[0].fields, ", ")));
   take(block, "the title");
 }
 
@@ -217,9 +268,7 @@ void DeckReader::read_behaviour(const Block& block)
 
 void DeckReader::read_friction(const Block& block)
 {
-  if (deck_.interactions.empty() || in_step_ || block.keyword.find("ROUGH") ||
-      block.keyword.find("LAGRANGE") || block.keyword.find("USER"))
-    return drop(block);
+  if (deck_.interactions.empty() || in_step_ || block.lines.size() > 1) return drop(block);
   if (block.lines.empty()) return;
   const double coefficient = number(block.lines[0], 0);
   if (!(coefficient >= 0))
@@ -302,7 +351,7 @@ void DeckReader::read_amplitude(const Block& block)
   amplitude.is_of_total_time =
       mesh::capitals(block.keyword.find("TIME").value_or("STEP TIME")).starts_with("TOTAL");
   const std::string definition = mesh::capitals(block.keyword.find("DEFINITION").value_or("TABULAR"));
-  if (definition != "TABULAR" || block.keyword.find("USER") || block.keyword.find("SMOOTH"))
+  if (definition != "TABULAR")
     return log_.refuse(block.keyword.place, "AMPLITUDE", "only tables can be imported",
                        "pairs of time and value: \"0, 0, 1, 1\"");
   std::vector<double> values;
@@ -311,11 +360,16 @@ void DeckReader::read_amplitude(const Block& block)
   if (values.size() < 2 || values.size() % 2 != 0)
     assembler_.lines().fail(block.keyword.place, "an amplitude is pairs of time and value");
   const auto shift = [&](std::string_view name)
-  { return mesh::number_of(block.keyword.find(name).value_or("0")).value_or(0); };
+  {
+    const std::optional<double> value = mesh::number_of(block.keyword.find(name).value_or("0"));
+    if (!value) assembler_.lines().fail(block.keyword.place, fmt::format("{} is not a number", name));
+    return *value;
+  };
   for (std::size_t i = 0; i < values.size(); i += 2)
   {
     amplitude.points.push_back({values[i] + shift("SHIFTX"), values[i + 1] + shift("SHIFTY")});
-    if (i > 0 && !(values[i] > values[i - 2]))
+    if (i > 0 && (!(values[i] > values[i - 2]) ||
+                  !std::isfinite((values[i + 1] - values[i - 1]) / (values[i] - values[i - 2]))))
       assembler_.lines().fail(block.keyword.place, "the times of an amplitude must increase");
   }
   deck_.amplitudes[mesh::capitals(required(block, "NAME"))] = std::move(amplitude);

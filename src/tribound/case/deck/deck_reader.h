@@ -3,11 +3,13 @@
 /// @file deck_reader.h
 /// The keywords of a deck that say something about materials, contact, supports and loads.
 
+#include <array>
 #include <map>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "tribound/case/deck/deck.h"
@@ -39,6 +41,7 @@ class DeckReader
 
   static const std::map<std::string_view, Handler>& handlers();
 
+  void check_parameters(const Block& block);
   void read_heading(const Block& block);
   void read_material(const Block& block);
   void read_elastic(const Block& block);
@@ -76,7 +79,8 @@ class DeckReader
   void fix_components(const Block& block, const Line& line, const std::string& target,
                       const std::vector<Index>& nodes);
   void spread_forces(const Block& block, const Line& line, const std::string& target,
-                     const std::map<Index, Point<3>>& forces);
+                     const std::map<Index, Point<3>>& forces, const std::array<bool, 3>& is_named);
+  [[nodiscard]] double initial_temperature(Index node) const;
   void read_acceleration(const Block& block, const Line& line, const std::string& label);
 
   /// The load of this kind on these members, or a new one.
@@ -106,6 +110,8 @@ class DeckReader
   double thickness_;
   DeckLog& log_;
   Deck deck_{};
+  using LoadKey = std::tuple<DeckLoadKind, int, std::size_t, Index>;  ///< size and first of the members
+  std::multimap<LoadKey, std::size_t> places_of_loads_{};
   const Block* coupling_ = nullptr;  ///< the last *COUPLING, before what says of which kind it is
   bool in_step_ = false;
   std::set<std::string> cards_{};     ///< keywords of loads that the step has named

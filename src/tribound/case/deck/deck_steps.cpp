@@ -28,7 +28,9 @@ void DeckReader::begin_step(const Block& block)
   in_step_ = true;
   renewed_.clear();
   cards_.clear();
-  for (DeckLoad& load : deck_.loads) load.is_in_step = false;
+  // What stands before the first step belongs to it.
+  if (!deck_.steps.empty())
+    for (DeckLoad& load : deck_.loads) load.is_in_step = false;
   if (const auto nlgeom = block.keyword.find("NLGEOM"); nlgeom && mesh::capitals(*nlgeom) != "NO")
     log_.drop(block.keyword.place, "NLGEOM",
               "strains and rotations are small, the surfaces stay as they are");
@@ -68,8 +70,7 @@ void DeckReader::end_step(const Block& block)
     return log_.refuse(step.place, "STEP", "the step has no *STATIC", "only static steps can be imported");
   for (DeckLoad& load : deck_.loads)
   {
-    if (!load.is_active) continue;
-    if (!load.is_in_step && renewed_.contains(load.kind)) end_load(load, step);
+    if (load.is_active && !load.is_in_step && renewed_.contains(load.kind)) end_load(load, step);
     follow(load);
   }
   static_cast<void>(block);
@@ -92,13 +93,19 @@ DeckLoad& DeckReader::load_on(DeckLoadKind kind, const Block& block, const mesh:
                               std::vector<double> data)
 {
   const bool adds_up = !is_state(kind);
-  for (DeckLoad& load : deck_.loads)
+  const LoadKey key = {kind, component, members.size(), members.at(0)};
+  const auto [begin, end] = places_of_loads_.equal_range(key);
+  for (auto same = begin; same != end; ++same)
+    if (DeckLoad& load = deck_.loads[same->second];
+        load.is_active && load.members == members && load.data == data)
+      return load;
+  for (const DeckLoad& load : deck_.loads)
   {
-    if (load.kind != kind || load.component != component || load.data != data || !load.is_active) continue;
-    if (load.members == members) return load;
+    if (!adds_up || load.kind != kind || load.component != component || load.data != data ||
+        !load.is_active || load.is_in_step)
+      continue;
     std::vector<Index> common;
-    if (adds_up && !load.is_in_step)
-      std::ranges::set_intersection(load.members, members, std::back_inserter(common));
+    std::ranges::set_intersection(load.members, members, std::back_inserter(common));
     if (!common.empty())
       log_.refuse(place, block.keyword.name,
                   fmt::format("{} replaces a part of the load on {} of an earlier step", target, load.target),
@@ -110,6 +117,7 @@ DeckLoad& DeckReader::load_on(DeckLoadKind kind, const Block& block, const mesh:
                             "temperatures in all steps",
                             target),
                 "give it in the first step, too");
+  places_of_loads_.emplace(key, deck_.loads.size());
   deck_.loads.push_back({kind, place, target, std::move(members), component, std::move(data)});
   return deck_.loads.back();
 }
@@ -125,9 +133,11 @@ void DeckReader::apply(DeckLoad& load, double value, const Block& block)
   if (is_more && amplitude != load.amplitude)
     log_.refuse(block.keyword.place, block.keyword.name,
                 fmt::format("{} has this load twice in a step, with different amplitudes", load.target));
+  if (!in_step_ && (!deck_.steps.empty() || !is_state(load.kind)))
+    log_.refuse(block.keyword.place, block.keyword.name, "stands outside of the steps", "put it into a step");
   load.magnitude = is_more ? load.magnitude + value : value;
   load.amplitude = amplitude;
-  load.is_in_step = in_step_;
+  load.is_in_step = true;
 }
 
 /// Loads without amplitude change evenly over the step. An amplitude of the time in the step counts in the
@@ -156,15 +166,15 @@ void DeckReader::note_new(const Block& block, std::span<const DeckLoadKind> kind
 {
   const std::string list = block.keyword.name == "DSLOAD" ? "DLOAD" : block.keyword.name;
   const bool is_new = mesh::capitals(block.keyword.find("OP").value_or("MOD")) == "NEW";
-  if (cards_.insert(list).second && is_new && in_step_) renewed_.insert(kinds.begin(), kinds.end());
+  if (!cards_.insert(list).second || !is_new || !in_step_) return;
+  renewed_.insert(kinds.begin(), kinds.end());
+  for (DeckLoad& load : deck_.loads)
+    if (renewed_.contains(load.kind)) load.is_in_step = false;
 }
 
 void DeckReader::read_boundary(const Block& block)
 {
   note_new(block, std::array{DeckLoadKind::displacement, DeckLoadKind::rigid_motion});
-  for (const char* parameter : {"USER", "SUBMODEL", "FIXED", "LOADCASE", "TIMEDELAY"})
-    if (block.keyword.find(parameter))
-      return log_.drop(block.keyword.place, "BOUNDARY", fmt::format("{} has no counterpart", parameter));
   if (mesh::capitals(block.keyword.find("TYPE").value_or("DISPLACEMENT")) != "DISPLACEMENT")
     return log_.refuse(block.keyword.place, "BOUNDARY", "velocities and accelerations cannot be imported");
   // Nodes given one by one are taken together where the rest of their lines agrees.
@@ -197,7 +207,6 @@ void DeckReader::fix(const Block& block, const Line& line, const std::string& ta
 {
   static const std::map<std::string, std::vector<int>> words = {
       {"ENCASTRE", {0, 1, 2}}, {"PINNED", {0, 1, 2}}, {"XSYMM", {0}}, {"YSYMM", {1}}, {"ZSYMM", {2}}};
-  if (nodes.empty()) return;
   const auto word = words.find(mesh::capitals(line.fields[1]));
   if (word == words.end()) return fix_components(block, line, target, nodes);
   for (const int component : word->second)
@@ -219,6 +228,10 @@ void DeckReader::fix_components(const Block& block, const Line& line, const std:
   };
   const int first = component(1);
   const int last = field(line, 2).empty() ? first : component(2);
+  if (last < first)
+    assembler_.lines().fail(line.place, fmt::format("the components {} to {} are none", first, last));
+  if (faces_.dim() == 2 && first <= 3 && last >= 3 && number(line, 3) != 0)
+    assembler_.lines().fail(line.place, "component 3 of a plane deck is given, and not 0");
   for (int c = first; c <= std::min(last, faces_.dim()); ++c)
     apply(load_on(DeckLoadKind::displacement, block, line.place, target, nodes, c - 1), number(line, 3),
           block);

@@ -135,6 +135,17 @@ class MshText
 void write_msh(const std::filesystem::path& path, const mesh::ImportedMesh& mesh)
 {
   assert(mesh.node_sets.empty());
+  // A line of the format has 255 characters, and ends a name at the first quotation mark.
+  constexpr std::size_t longest = 200;
+  const auto check = [&](const std::string& name)
+  {
+    if (name.size() <= longest && name.find('"') == std::string::npos) return;
+    throw InputError({.file = path.string()},
+                     fmt::format("a .msh cannot hold the name {} of a group", name.substr(0, longest)),
+                     "a name of at most 200 characters, without quotation marks");
+  };
+  for (const mesh::CellSet& set : mesh.cell_sets) check(set.name);
+  for (const mesh::FacetSet& set : mesh.facet_sets) check(set.name);
   AtomicFile file(path);
   MshText(file, mesh).write();
   file.commit();

@@ -147,6 +147,9 @@ std::vector<Index> InpAssembler::members_named(std::string_view field, const Inp
     lines_.fail(place, fmt::format("there is no set \"{}\"", field.substr(0, 80)), "is the deck complete?");
   std::vector<Index> places;
   add_members(*members, 0, place, places, resolved, index);
+  if (places.empty())
+    lines_.fail(place, fmt::format("the set \"{}\" is empty", field.substr(0, 80)),
+                "a set lists its members, or names sets before it");
   sort_and_unite(places);
   return places;
 }
