@@ -526,16 +526,7 @@ TEST(Inp, DamagedDecksEndInAMessage)
     std::string text = sound;
     if (k % 2 == 0) text.erase(text.find("*INCLUDE"), 24);
     const mesh::MeshFile file = directory.write("deck.inp", test::damaged(text, random));
-    try
-    {
-      (void)mesh::read_mesh(file);
-      ++n_read;
-    }
-    catch (const InputError& error)
-    {
-      EXPECT_NE(error.problem(), "");
-      EXPECT_NE(error.where().file, "");
-    }
+    if (testing_mesh::gives_mesh_or_message(file)) ++n_read;
   }
   EXPECT_GT(n_read, 300);
 }

@@ -283,17 +283,7 @@ TEST(Med, DamagedFilesEndInAMessage)
       else
         text[at] = static_cast<char>(below(2) == 0 ? 255 : below(256));
     }
-    const mesh::MeshFile file = directory.write("damaged.med", text);
-    try
-    {
-      (void)mesh::read_mesh(file);
-      ++n_read;
-    }
-    catch (const InputError& error)
-    {
-      EXPECT_NE(error.problem(), "");
-      EXPECT_NE(error.where().file, "");
-    }
+    if (testing_mesh::gives_mesh_or_message(directory.write("damaged.med", text))) ++n_read;
   }
   EXPECT_GT(n_read, 0);
 }

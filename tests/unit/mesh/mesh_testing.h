@@ -61,6 +61,22 @@ void expect_input_error(const Action& action, std::initializer_list<std::string>
   for (const std::string& part : parts) EXPECT_THAT(message, ::testing::HasSubstr(part));
 }
 
+/// Reads a file that may be damaged: whether it gives a mesh; otherwise expects a message with the file.
+inline bool gives_mesh_or_message(const mesh::MeshFile& file)
+{
+  try
+  {
+    (void)mesh::read_mesh(file);
+    return true;
+  }
+  catch (const InputError& error)
+  {
+    EXPECT_NE(error.problem(), "");
+    EXPECT_NE(error.where().file, "");
+    return false;
+  }
+}
+
 template <int dim>
 double volume(const mesh::Mesh<dim>& mesh)
 {

@@ -360,17 +360,8 @@ TEST(Vtk, DamagedTextsEndInAMessage)
       text.replace(at, below(4), others[below(3)]);
       if (below(20) == 0) text.resize(at + 1);
     }
-    const mesh::MeshFile file = directory.write(k % 2 == 0 ? "grid.vtk" : "grid.vtu", text);
-    try
-    {
-      (void)mesh::read_mesh(file);
+    if (testing_mesh::gives_mesh_or_message(directory.write(k % 2 == 0 ? "grid.vtk" : "grid.vtu", text)))
       ++n_read;
-    }
-    catch (const InputError& error)
-    {
-      EXPECT_NE(error.problem(), "");
-      EXPECT_NE(error.where().file, "");
-    }
   }
   EXPECT_GT(n_read, 50);
 }
