@@ -119,7 +119,7 @@ std::string MedReader::name_of_mesh() const
 /// The group with the nodes: that of the mesh (2.2, 2.3), or that of its only time.
 Hdf5Group MedReader::step_of_mesh() const
 {
-  const Hdf5Group mesh = file_.group("ENS_MAA").group(name_);
+  Hdf5Group mesh = file_.group("ENS_MAA").group(name_);
   if (mesh.attribute("TYP").value_or(0) != 0)
     fail(fmt::format("mesh \"{}\" is structured", name_), "save it as an unstructured mesh");
   if (mesh.has("NOE")) return mesh;
