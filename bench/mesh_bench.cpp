@@ -182,7 +182,7 @@ void read_deck(benchmark::State& state)
 /// The same cube as VTK's XML, in text or raw bytes behind it.
 std::filesystem::path write_large_vtu(int n, bool is_text)
 {
-  const auto file = std::filesystem::temp_directory_path() / "tribound_mesh_bench.vtu";
+  auto file = std::filesystem::temp_directory_path() / "tribound_mesh_bench.vtu";
   const auto node = [n](int i, int j, int k) { return i + (n + 1) * (j + (n + 1) * k); };
   std::vector<double> points;
   std::vector<std::int64_t> connectivity;
