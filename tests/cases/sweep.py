@@ -139,8 +139,8 @@ Mesh.MeshSizeMax = 0.6;
 """
 
 
-def case_with_mesh_file(directory):
-    lines = ['file = "box.geo"' if line.startswith("box =") else line for line in CASE.splitlines()]
+def case_with_mesh_file(directory, file="box.geo"):
+    lines = [f'file = "{file}"' if line.startswith("box =") else line for line in CASE.splitlines()]
     text = "\n".join(lines) + '\n[boundary.right]\ntraction = [0, 0]\n'
     (directory / "mesh.toml").write_text(text)
 
@@ -159,6 +159,21 @@ def check_mesh_file(program, directory):
     (directory / "box.geo").unlink()
     assert "bound" not in tribound(program, directory, *arguments, code=1)
     assert rows(sweep)[0]["status"] == "bad input" and not (sweep / "0001/certificate.json").exists()
+
+
+def check_included_file(program, directory):
+    """Nor when a file that a deck includes has changed."""
+    case_with_mesh_file(directory, "box.inp")
+    sides = enumerate(["bottom", "right", "top", "left"], start=1)
+    surfaces = "".join(f"*SURFACE, NAME={side}\n1, S{number}\n" for number, side in sides)
+    (directory / "box.inp").write_text("*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=CPE4\n1, 1, 2, 3, 4\n" + surfaces)
+    nodes = "*NODE\n1, 0, 0\n2, 2, 0\n3, 2, 1\n4, 0, 1\n"
+    (directory / "nodes.inp").write_text(nodes)
+    arguments = ["mesh.toml", "degree=[1]", "--resume"]
+    tribound(program, directory, *arguments)
+    assert "kept" in tribound(program, directory, *arguments)
+    (directory / "nodes.inp").write_text(nodes.replace("3, 2, 1", "3, 2, 1.1"))
+    assert "kept" not in tribound(program, directory, *arguments)
 
 
 def check_interrupted_before_the_first_level(program, directory):
@@ -210,6 +225,7 @@ CHECKS = (
     check_table,
     check_resume,
     check_mesh_file,
+    check_included_file,
     check_interrupted_before_the_first_level,
     check_surroundings,
 )

@@ -32,7 +32,8 @@ bool belongs_to_slider(const Row& row)
 std::vector<std::string> companions(const Row& row)
 {
   if (row.table == "material.NAME")
-    return {"material.NAME.E=1", "material.NAME.nu=0", row.key == "of" ? "material.NAME.where=\"x < 1\"" : "degree=1"};
+    return {"material.NAME.E=1", "material.NAME.nu=0",
+            row.key == "of" ? "material.NAME.where=\"x < 1\"" : "degree=1"};
   if (row.key == "of") return {row.table + ".where=\"x < 1\""};
   if (row.key == "threshold") return {row.table + ".friction=tresca"};
   if (row.key == "reference_degree") return {"degree=1"};

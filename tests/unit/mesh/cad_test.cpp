@@ -134,6 +134,19 @@ TEST(Cad, LengthsAreThoseOfTheFile)
   }
 }
 
+TEST(Cad, SolidsGoByTheNamesOfTheirParts)
+{
+  const Directory directory;
+  write_cylinder_and_cube(directory / "part.step");
+  const std::regex unnamed("Open CASCADE STEP translator [^']*\\.2");
+  mesh::MeshFile file =
+      directory.write("named.step", std::regex_replace(text_of(directory / "part.step"), unnamed, "cube"));
+  file.options.size = 1;
+  const mesh::Survey found = survey_of(file);
+  EXPECT_EQ(found.regions.at(0).name, "solid1") << "what Open CASCADE calls a part without a name is none";
+  EXPECT_EQ(found.regions.at(1).name, "cube");
+}
+
 TEST(Cad, WithoutASizeOneIsChosenAndSaid)
 {
   const Directory directory;
