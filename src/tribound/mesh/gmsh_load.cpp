@@ -97,7 +97,7 @@ class EntityGroups
   [[nodiscard]] std::string name_of(const gmsh::Entity& entity, std::span<const std::string> taken) const
   {
     constexpr std::array<std::string_view, 4> words = {"point", "edge", "face", "solid"};
-    const std::string number = std::to_string(entity.second);
+    std::string number = std::to_string(entity.second);
     if (!has_named_entities(file_)) return number;
     const std::string label = gmsh::entity_name(entity);
     std::string name = label.substr(label.rfind('/') + 1);

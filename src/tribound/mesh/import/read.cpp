@@ -69,6 +69,7 @@ const Format& check_file(const MeshFile& source)
   if (format == formats.end())
   {
     std::vector<std::string_view> suffixes;
+    suffixes.reserve(formats.size());
     for (const Format& known : formats) suffixes.push_back(known.suffix);
     fail("is of no format that is read", fmt::format("{}", fmt::join(suffixes, ", ")));
   }
