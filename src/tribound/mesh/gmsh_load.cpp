@@ -87,8 +87,9 @@ class EntityGroups
       groups.names.push_back(name_of(entity, groups.names));
     }
     if (n_between > 0)
-      notes_.push_back(fmt::format("{}: {} {}s lie between two {}s, which are joined there", file_.string(),
-                                   n_between, entity_word(dim), entity_word(mesh_dim_)));
+      notes_.push_back(
+          fmt::format("{}: {}s between two {}s, which are joined there and are no boundaries: {}",
+                      file_.string(), entity_word(dim), entity_word(mesh_dim_), n_between));
     return groups;
   }
 

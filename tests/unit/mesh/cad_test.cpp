@@ -119,6 +119,30 @@ TEST(Cad, CurvedFacesAreTheTrueShape)
   EXPECT_NEAR(mesh::sagitta<3>(*simplicial.labels().quadratic_facets, 0), 1 - std::cos(0.25), 0.015);
 }
 
+TEST(Cad, SolidsThatShareAFaceAreOneBody)
+{
+  const Directory directory;
+  mesh::MeshFile file{directory / "part.brep", {}};
+  with_gmsh(
+      [&]
+      {
+        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
+        gmsh::model::occ::addBox(0, 0, 1, 1, 1, 1);
+        std::vector<std::pair<int, int>> parts;
+        std::vector<std::vector<std::pair<int, int>>> map;
+        gmsh::model::occ::fragment({{3, 1}}, {{3, 2}}, parts, map);
+        gmsh::model::occ::synchronize();
+        gmsh::write(file.path.string());
+      });
+  file.options.size = 0.6;
+  std::vector<std::string> notes;
+  const mesh::Survey found = survey_of(file, &notes);
+  EXPECT_EQ(found.n_bodies, 1U);
+  EXPECT_EQ(found.regions.size(), 2U);
+  EXPECT_EQ(found.boundaries.size(), 10U);
+  EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("surfaces between two volumes")));
+}
+
 TEST(Cad, LengthsAreThoseOfTheFile)
 {
   const Directory directory;
