@@ -155,10 +155,14 @@ TEST_F(ImportDeck, SpreadsNodalForces)
 
   // The lines of a step add up, also where nodes are given one by one.
   const ImportedDeck uneven =
-      import("", "*CLOAD\n15, 3, -1.\n16, 3, -1.\n17, 3, -2.\n18, 3, -1.5\n18, 3, -.5\n");
+      import("", "*CLOAD\n15, 3, -1.\n16, 3, -2.\n17, 3, -1.\n18, 3, -1.5\n18, 3, -.5\n");
   const case_file::Config spread = config_of(uneven);
   EXPECT_NEAR(value(spread.boundaries.back().traction[2], 1), -6, 1e-12);
   EXPECT_THAT(spread.not_covered, testing::Contains(HasSubstr("spread evenly")));
+
+  const char* couple = "*CLOAD\n15, 3, 1.\n16, 3, -1.\n17, 3, -1.\n18, 3, 1.\n";
+  EXPECT_THAT(message_of([&] { return import("", couple); }),
+              HasSubstr("their moment, or what cancels, is lost"));
 
   const auto alone = [&] { return import("", "*CLOAD\n15, 3, -1.\n"); };
   EXPECT_THAT(message_of(alone), HasSubstr("forces at single nodes, such as node 15"));
@@ -202,6 +206,38 @@ top, 1, 1.
   EXPECT_THAT(config.history->program.targets, testing::ElementsAre(0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3));
 }
 
+/// The two cubes with these steps, each of length 1.
+std::string with_steps(std::initializer_list<const char*> steps)
+{
+  std::string text(two_cubes);
+  for (const char* step : steps) text += fmt::format("*STEP\n*STATIC\n1., 1.\n{}*END STEP\n", step);
+  return text;
+}
+
+TEST_F(ImportDeck, LoadsEndAndBeginAgain)
+{
+  const auto pressure_at = [&](const std::string& deck, double t)
+  { return value(*boundary(config_of(import(deck)), "crown").pressure, t); };
+  const char* first = "*DSLOAD\ncrown, P, 10.\n";
+  const std::string ended = with_steps({first, "*DSLOAD, OP=NEW\n", ""});
+  EXPECT_NEAR(pressure_at(ended, 1), 10, 1e-14);
+  EXPECT_NEAR(pressure_at(ended, 2), 0, 1e-14);
+  EXPECT_NEAR(pressure_at(ended, 3), 0, 1e-14);
+  const std::string again = with_steps({first, "*DSLOAD, OP=NEW\n", "*DSLOAD\ncrown, P, 4.\n"});
+  EXPECT_NEAR(pressure_at(again, 3), 4, 1e-14);
+  EXPECT_NEAR(pressure_at(with_steps({"*DSLOAD\ncrown, P, 10.\ncrown, P, 1.\n", ""}), 2), 11, 1e-14);
+
+  const case_file::Config zero =
+      config_of(import(with_steps({"*CLOAD\ntop, 1, 5.\n", "*CLOAD\ntop, 1, 0.\n"})));
+  EXPECT_NEAR(value(boundary(zero, "top").traction[0], 1), 20, 1e-12);
+  EXPECT_NEAR(value(boundary(zero, "top").traction[0], 2), 0, 1e-12);
+
+  const std::string early =
+      "*AMPLITUDE, NAME=half\n0., 0., 1., .5\n*BOUNDARY, AMPLITUDE=half\ntop, 3, 3, .01\n";
+  const case_file::Config before = config_of(import(early, ""));
+  EXPECT_NEAR(value(*boundary(before, "top").displacement[2], 1), 0.005, 1e-15);
+}
+
 TEST_F(ImportDeck, TakesWeightRotationAndTemperature)
 {
   const case_file::Config config = config_of(
@@ -220,6 +256,15 @@ TEST_F(ImportDeck, TakesWeightRotationAndTemperature)
   EXPECT_EQ(value(upper.body[2], 1, x), 0);
   EXPECT_EQ(value(*lower.temperature, 1), 120);
   EXPECT_EQ(value(lower.reference_temperature, 1), 20);
+
+  // Only the direction of the weight counts; of two temperatures of a node the last one does.
+  const case_file::Config twice =
+      config_of(import("*NSET, NSET=all, GENERATE\n1, 18\n*NSET, NSET=high, GENERATE\n11, 18\n",
+                       "*DLOAD\nlower, GRAV, 10., 0., 0., -1.\nlower, GRAV, 20., 0., 0., "
+                       "-2.\n*TEMPERATURE\nall, 20.\nhigh, 100.\n"));
+  EXPECT_NEAR(value(twice.loads[0].body[2], 1), -7.8e-9 * 30, 1e-18);
+  EXPECT_EQ(value(*twice.loads[0].temperature, 1), 20);
+  EXPECT_EQ(value(*twice.loads[1].temperature, 1), 100);
 }
 
 TEST_F(ImportDeck, AdjustsAndClears)
@@ -289,6 +334,16 @@ TEST_F(ImportDeck, NamesWhatItCannotTake)
       {"", "*DLOAD\nupper, BX, 1.\n", "the load \"BX\" cannot be imported", "DLOAD"},
       {"*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nupper\n", "", "*MODEL CHANGE", "MODEL CHANGE"},
       {"*AMPLITUDE, NAME=a, USER\n", "", "only tables", ""},
+      {"*NSET, NSET=none, GENERATE\n100, 200\n", "*BOUNDARY\nnone, 1\n", "the set \"none\" is empty", ""},
+      {"*ELSET, ELSET=both\n1, 2\n*SOLID SECTION, ELSET=both, MATERIAL=steel\n", "", "every element once",
+       ""},
+      {"*SURFACE INTERACTION, NAME=glue\n*SURFACE BEHAVIOR, NO SEPARATION\n", "", "NOSEPARATION",
+       "SURFACE BEHAVIOR"},
+      {"*AMPLITUDE, NAME=a, VALUE=ABSOLUTE\n0., 0., 1., 1.\n", "", "VALUE=ABSOLUTE", "AMPLITUDE"},
+      {"*CLOAD\ntop, 1, 1.\n", "", "stands outside of the steps", ""},
+      {"", "*DLOAD\n2, P2, 1.\n2, P2, 1.\n", "has the load twice", ""},
+      {"", "*DSLOAD\ncrown, TRVEC, 1.\n", "TRVEC has no direction", ""},
+      {"", "*BOUNDARY\ntop, 3, 1\n", "the components 3 to 1 are none", ""},
       {"*CLEARANCE, SLAVE=none, MASTER=below, VALUE=1\n", "", "there is no contact pair", ""},
   };
   for (const Refused& c : cases)
@@ -320,6 +375,13 @@ TEST_F(ImportDeck, HoldsPrismsByTheirEnds)
   EXPECT_FALSE(ends.displacement[0]);
   EXPECT_EQ(value(*ends.displacement[1], 1), 0);
   EXPECT_THAT(config.not_covered, testing::Contains(HasSubstr("held on the faces across it alone")));
+}
+
+TEST_F(ImportDeck, ShowsTextsOfAnyBytes)
+{
+  std::string text = fmt::format("{}{}*END STEP\n", two_cubes, one_step);
+  text.replace(text.find("Two cubes"), 9, "W\xfcrfel");
+  EXPECT_EQ(config_of(import(text)).title, "W?rfel, hand made");
 }
 
 TEST_F(ImportDeck, DamagedDecksEndInAMessage)
