@@ -333,7 +333,7 @@ TEST_F(ImportDeck, NamesWhatItCannotTake)
       {"", "*BOUNDARY\n15, 1, 1\n", "node 15, which lies on no face that is held", "BOUNDARY"},
       {"", "*DLOAD\nupper, BX, 1.\n", "the load \"BX\" cannot be imported", "DLOAD"},
       {"*MODEL CHANGE, TYPE=ELEMENT, REMOVE\nupper\n", "", "*MODEL CHANGE", "MODEL CHANGE"},
-      {"*AMPLITUDE, NAME=a, USER\n", "", "only tables", ""},
+      {"*AMPLITUDE, NAME=a, DEFINITION=PERIODIC\n", "", "only tables", ""},
       {"*NSET, NSET=none, GENERATE\n100, 200\n", "*BOUNDARY\nnone, 1\n", "the set \"none\" is empty", ""},
       {"*ELSET, ELSET=both\n1, 2\n*SOLID SECTION, ELSET=both, MATERIAL=steel\n", "", "every element once",
        ""},

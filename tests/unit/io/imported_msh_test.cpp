@@ -65,6 +65,50 @@ TEST_P(ImportedMsh, IsReadAsTheMeshThatWasWritten)
   EXPECT_EQ(testing_mesh::misplaced_nodes(read), "");
 }
 
+/// A tetrahedron of each order, apart.
+mesh::ImportedMesh two_orders()
+{
+  mesh::ImportedMesh mesh;
+  const std::vector<Point<3>> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const double shift : {0., 5.})
+    for (const Point<3>& x : corners) mesh.nodes.emplace_back(x + shift * Point<3>::UnitX());
+  const mesh::ShapeTable& table = mesh::table_of(mesh::Shape::tetrahedron);
+  std::vector<Index> second = {4, 5, 6, 7};
+  for (int e = 0; e < table.n_edges; ++e)
+  {
+    second.push_back(static_cast<Index>(mesh.nodes.size()));
+    mesh.nodes.emplace_back((mesh.nodes[4 + table.edges[e][0]] + mesh.nodes[4 + table.edges[e][1]]) / 2);
+  }
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    mesh.node_numbers.push_back(static_cast<std::int64_t>(i) + 1);
+  mesh.cells = {{{mesh::Shape::tetrahedron, 4}, {0, 1, 2, 3}, {1}},
+                {{mesh::Shape::tetrahedron, 10}, second, {2}}};
+  return mesh;
+}
+
+TEST(ImportedMshOf, BothOrdersHasCornersAlone)
+{
+  const testing_mesh::Directory directory;
+  io::write_msh(directory / "both.msh", two_orders());
+  std::vector<std::string> notes;
+  const mesh::ImportedMesh read =
+      mesh::read_imported({directory / "both.msh", {}}, nullptr, mesh::default_patience, notes);
+  ASSERT_EQ(read.cells.size(), 1U);
+  EXPECT_EQ(read.cells[0].type, (mesh::ElementType{mesh::Shape::tetrahedron, 4}));
+  EXPECT_EQ(read.nodes.size(), 8U);
+}
+
+TEST(ImportedMshOf, NamesThatTheFormatCannotHoldIsRefused)
+{
+  const testing_mesh::Directory directory;
+  for (const std::string& name : {std::string("a\"b"), std::string(300, 'a')})
+  {
+    mesh::ImportedMesh mesh = two_orders();
+    mesh.cell_sets = {{name, {0, 1}}};
+    EXPECT_THROW(io::write_msh(directory / "no.msh", mesh), InputError);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ImportedMsh, testing::ValuesIn(testing_mesh::cell_types),
                          [](const auto& info) {
                            return std::string(mesh::table_of(info.param.shape).name) +

@@ -15,7 +15,7 @@
 #include <random>
 
 #include "tribound/mesh/geometry.h"
-#include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/med.h"
 #include "tribound/mesh/import/vtk.h"
 #include "tribound/mesh/mesh.h"

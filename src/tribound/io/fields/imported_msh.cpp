@@ -130,6 +130,21 @@ class MshText
   std::string text_{};
 };
 
+/// Of elements the corners alone.
+void keep_corners(std::vector<mesh::ElementBlock>& blocks)
+{
+  for (mesh::ElementBlock& block : blocks)
+  {
+    const int n_corners = mesh::table_of(block.type.shape).n_corners;
+    std::vector<Index> nodes;
+    nodes.reserve(block.size() * n_corners);
+    for (std::size_t e = 0; e < block.size(); ++e)
+      for (const Index node : block.element(e).first(n_corners)) nodes.push_back(node);
+    block.nodes = std::move(nodes);
+    block.type.n_nodes = n_corners;
+  }
+}
+
 }  // namespace
 
 void write_msh(const std::filesystem::path& path, const mesh::ImportedMesh& mesh)
@@ -147,7 +162,15 @@ void write_msh(const std::filesystem::path& path, const mesh::ImportedMesh& mesh
   for (const mesh::CellSet& set : mesh.cell_sets) check(set.name);
   for (const mesh::FacetSet& set : mesh.facet_sets) check(set.name);
   AtomicFile file(path);
-  MshText(file, mesh).write();
+  if (mesh::has_both_orders(mesh.cells))
+  {
+    mesh::ImportedMesh corners = mesh;
+    keep_corners(corners.cells);
+    for (mesh::FacetSet& set : corners.facet_sets) keep_corners(set.facets);
+    MshText(file, corners).write();
+  }
+  else
+    MshText(file, mesh).write();
   file.commit();
 }
 

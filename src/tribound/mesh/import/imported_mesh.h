@@ -60,4 +60,13 @@ struct ImportedMesh
   std::vector<NodeSet> node_sets{};
 };
 
+/// Whether some elements have nodes in the middles of their edges, and some have none.
+[[nodiscard]] inline bool has_both_orders(std::span<const ElementBlock> blocks)
+{
+  bool has_first = false;
+  bool has_second = false;
+  for (const ElementBlock& block : blocks) (has_middles(block.type) ? has_second : has_first) = true;
+  return has_first && has_second;
+}
+
 }  // namespace tribound::mesh
