@@ -175,7 +175,7 @@ struct Config
   std::string file;  ///< the case file, for messages
   std::string title;
   std::vector<std::string> not_covered;  ///< added to that of the certificate
-  problem::Units units;  ///< of [units]
+  problem::Units units;                  ///< of [units]
   mesh::MeshSource mesh;
   std::vector<mesh::FormulaGroup> groups;  ///< that the mesh gets before anything is looked for in it
   std::vector<MaterialConfig> materials;

@@ -15,8 +15,8 @@
 #include <random>
 
 #include "tribound/mesh/geometry.h"
-#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/med.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/mesh/import/vtk.h"
 #include "tribound/mesh/mesh.h"
 #include "unit/mesh/imported_testing.h"

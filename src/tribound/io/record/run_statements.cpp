@@ -83,8 +83,10 @@ certify::Statements run_statements(const adapt::LevelView<dim>& view, const Leve
   return statements;
 }
 
-template certify::Statements run_statements(const adapt::Discretisation<2>&, const CaseFacts&, const adapt::Method&);
-template certify::Statements run_statements(const adapt::Discretisation<3>&, const CaseFacts&, const adapt::Method&);
+template certify::Statements run_statements(const adapt::Discretisation<2>&, const CaseFacts&,
+                                            const adapt::Method&);
+template certify::Statements run_statements(const adapt::Discretisation<3>&, const CaseFacts&,
+                                            const adapt::Method&);
 template certify::Statements run_statements(const adapt::LevelView<2>&, const LevelRecord&, const CaseFacts&,
                                             const adapt::Method&, bool);
 template certify::Statements run_statements(const adapt::LevelView<3>&, const LevelRecord&, const CaseFacts&,
