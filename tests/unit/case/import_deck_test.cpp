@@ -227,6 +227,11 @@ TEST_F(ImportDeck, LoadsEndAndBeginAgain)
   EXPECT_NEAR(pressure_at(again, 3), 4, 1e-14);
   EXPECT_NEAR(pressure_at(with_steps({"*DSLOAD\ncrown, P, 10.\ncrown, P, 1.\n", ""}), 2), 11, 1e-14);
 
+  // Every list of loads is renewed by itself.
+  const std::string renewed = with_steps(
+      {"*BOUNDARY, OP=NEW\n*BOUNDARY\nbase, 1, 3\n*DSLOAD, OP=NEW\n*DSLOAD\ncrown, P, 3.\n*CLOAD, OP=NEW\n"});
+  EXPECT_EQ(pressure_at(renewed, 1), 3);
+
   const case_file::Config zero =
       config_of(import(with_steps({"*CLOAD\ntop, 1, 5.\n", "*CLOAD\ntop, 1, 0.\n"})));
   EXPECT_NEAR(value(boundary(zero, "top").traction[0], 1), 20, 1e-12);

@@ -169,7 +169,7 @@ void DeckReader::note_new(const Block& block, std::span<const DeckLoadKind> kind
   if (!cards_.insert(list).second || !is_new || !in_step_) return;
   renewed_.insert(kinds.begin(), kinds.end());
   for (DeckLoad& load : deck_.loads)
-    if (renewed_.contains(load.kind)) load.is_in_step = false;
+    if (std::ranges::count(kinds, load.kind) > 0) load.is_in_step = false;
 }
 
 void DeckReader::read_boundary(const Block& block)
