@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numbers>
-#include <regex>
 #include <string_view>
 
 #include "tribound/base/error.h"
 #include "tribound/mesh/gmsh_library.h"
 #include "tribound/mesh/gmsh_session.h"
+#include "tribound/mesh/import/cad_unit.h"
+#include "tribound/mesh/import/file_text.h"
 #include "tribound/mesh/triangulated_surface.h"
 
 namespace tribound::mesh
@@ -27,7 +26,7 @@ constexpr std::array<std::string_view, 5> cad_suffixes = {".step", ".stp", ".ige
 
 bool is_cad(const std::filesystem::path& file)
 {
-  return std::ranges::count(cad_suffixes, file.extension().string()) > 0;
+  return std::ranges::count(cad_suffixes, suffix_of(file)) > 0;
 }
 
 /// Coordinates beyond this have squares and volumes outside the range of a double.
@@ -47,34 +46,6 @@ void check_points(const std::filesystem::path& file)
                     finite ? fmt::format("beyond {:g}", largest_coordinate) : "which are not finite numbers"),
         "mend its coordinates");
   }
-}
-
-/// The unit of length of a STEP or IGES file by the name that Open CASCADE has for it; empty: not found. Gmsh
-/// would convert to millimetres.
-std::string length_unit(const std::filesystem::path& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  std::smatch match;
-  if (file.extension().string().starts_with(".i"))
-  {
-    // The 15th parameter of the global section: "2HMM", "4HINCH".
-    static const std::regex name(R"((?:^|,)\s*\d+H(INCH|IN|MM|FT|MI|M|KM|MIL|UM|CM|UIN)\s*,)");
-    const std::string global = text.substr(0, std::min<std::size_t>(text.size(), 4096));
-    if (!std::regex_search(global, match, name)) return {};
-    return match[1] == "IN" ? "INCH" : match[1].str();
-  }
-  static const std::regex inch("CONVERSION_BASED_UNIT\\s*\\(\\s*'(INCH|FOOT)'", std::regex::icase);
-  static const std::regex metre(R"(SI_UNIT\s*\(\s*(\$|\.\w+\.)\s*,\s*\.METRE\.\s*\))");
-  if (std::regex_search(text, match, inch))
-    return match.str(1).starts_with("F") || match.str(1).starts_with("f") ? "FT" : "INCH";
-  if (!std::regex_search(text, match, metre)) return {};
-  const std::string prefix = match[1];
-  if (prefix == "$") return "M";
-  if (prefix == ".MILLI.") return "MM";
-  if (prefix == ".CENTI.") return "CM";
-  if (prefix == ".MICRO.") return "UM";
-  return prefix == ".KILO." ? "KM" : "";
 }
 
 /// Sets the size of the elements.
@@ -121,12 +92,12 @@ void fill(const MeshFile& source)
 
 bool has_named_entities(const std::filesystem::path& file)
 {
-  return is_cad(file) || file.extension() == ".stl";
+  return is_cad(file) || suffix_of(file) == ".stl";
 }
 
 bool is_geometry(const std::filesystem::path& file)
 {
-  return has_named_entities(file) || file.extension() == ".geo";
+  return has_named_entities(file) || suffix_of(file) == ".geo";
 }
 
 void mesh_geometry(const MeshFile& source, std::vector<std::string>& notes)
@@ -134,13 +105,19 @@ void mesh_geometry(const MeshFile& source, std::vector<std::string>& notes)
   const std::filesystem::path& file = source.path;
   if (is_cad(file))
   {
+    // Gmsh would convert to millimetres.
     if (const std::string unit = length_unit(file); !unit.empty())
       gmsh::set_string("Geometry.OCCTargetUnit", unit);
+    else if (suffix_of(file) != ".brep")  // which names none
+      notes.push_back(
+          fmt::format("{}: the file names no unit of length, several, or one that is not known here: "
+                      "its lengths have become millimetres",
+                      file.string()));
     gmsh::set_number("Mesh.ElementOrder", 2);
   }
   run_gmsh(file, "read the file", "mend the geometry there; what it merges is looked for beside it",
            [&] { gmsh::open(file.string()); });
-  if (file.extension() == ".stl") fill(source);
+  if (suffix_of(file) == ".stl") fill(source);
   const int dim = gmsh::dimension();
   check_points(file);
   const bool has_mesh = dim >= 2 && !gmsh::element_types(dim).empty();

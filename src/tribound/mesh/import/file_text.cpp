@@ -22,6 +22,14 @@ std::string content_of(const std::filesystem::path& file, const Where& where, co
   return content;
 }
 
+std::string suffix_of(const std::filesystem::path& file)
+{
+  std::string suffix = file.extension().string();
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return suffix;
+}
+
 bool is_utf8(std::string_view name)
 {
   for (std::size_t i = 0; i < name.size(); ++i)

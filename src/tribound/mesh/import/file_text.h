@@ -18,6 +18,9 @@ namespace tribound::mesh
 [[nodiscard]] std::string content_of(const std::filesystem::path& file, const Where& where,
                                      const std::string& hint);
 
+/// ".step" of "Part.STEP".
+[[nodiscard]] std::string suffix_of(const std::filesystem::path& file);
+
 /// Whether a name can be shown: UTF-8 without control characters.
 [[nodiscard]] bool is_utf8(std::string_view name);
 

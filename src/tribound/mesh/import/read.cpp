@@ -15,6 +15,7 @@
 #include "tribound/mesh/cut_open.h"
 #include "tribound/mesh/import/bdf_check.h"
 #include "tribound/mesh/import/choices.h"
+#include "tribound/mesh/import/file_text.h"
 #include "tribound/mesh/import/inp.h"
 #include "tribound/mesh/import/med.h"
 #include "tribound/mesh/import/vtk.h"
@@ -65,7 +66,7 @@ const Format& check_file(const MeshFile& source)
   std::error_code error;
   if (!std::filesystem::exists(file, error))
     fail("does not exist", source.where.file.empty() ? "" : "the path is relative to the case file");
-  const auto format = std::ranges::find(formats, file.extension().string(), &Format::suffix);
+  const auto format = std::ranges::find(formats, suffix_of(file), &Format::suffix);
   if (format == formats.end())
   {
     std::vector<std::string_view> suffixes;
@@ -85,7 +86,7 @@ const Format& check_file(const MeshFile& source)
          "save it again with the program that has made it");
   stream.clear();
   stream.seekg(-1, std::ios::end);
-  if (file.extension() == ".geo" && stream.get() != '\n')  // Gmsh ignores the statement at the very end
+  if (format->suffix == ".geo" && stream.get() != '\n')  // Gmsh ignores the statement at the very end
     fail("does not end with a newline, and Gmsh would ignore its last statement", "add a newline at the end");
   return *format;
 }
@@ -124,7 +125,7 @@ AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& fi
 AnyMesh read_file(const MeshFile& file, const FindSeams& find_seams, const std::atomic<bool>* stop,
                   std::vector<std::string>* notes, std::span<const FormulaGroup> groups)
 {
-  if (file.path.extension() == ".stl")
+  if (suffix_of(file.path) == ".stl")
     throw InputError(
         file.where, fmt::format("mesh file \"{}\" is a surface without a volume", file.path.string()),
         fmt::format("fill it once: tribound mesh {} {} --size 2", file.path.filename().string(),
