@@ -200,52 +200,45 @@ void CaseMaker::find_boundaries()
 std::vector<Index> CaseMaker::faces_of_displacement(const DeckLoad& load)
 {
   const mesh::ImportedMesh& mesh = assembler_.mesh();
-  std::vector<Index> size(body_.size(), 0);
-  for (const Index b : body_)
-    if (b >= 0) ++size[b];
-  std::vector<Index> held(body_.size(), 0);
-  for (const Index node : load.members)
-    if (body_[node] >= 0) ++held[body_[node]];
-  std::vector<char> is_whole(body_.size(), 0);
-  for (std::size_t b = 0; b < body_.size(); ++b) is_whole[b] = size[b] > 0 && held[b] == size[b];
-
+  const std::set<Index> whole = whole_bodies_.within(load.members);
+  const std::span<const Index> body = whole_bodies_.bodies();
   std::vector<Index> faces = faces_.with_all_nodes(load.members);
-  std::erase_if(faces, [&](Index face) { return is_whole[body_[faces_.nodes(face).nodes[0]]] != 0; });
-  std::vector<char> is_on_face(body_.size(), 0);
+  std::erase_if(faces, [&](Index face) { return whole.contains(body[faces_.nodes(face).nodes[0]]); });
+  std::vector<char> is_on_face(body.size(), 0);
   for (const Index face : faces)
     for (const Index node : faces_.nodes(face).span()) is_on_face[node] = 1;
   for (const Index node : load.members)
   {
-    if (is_on_face[node] != 0 || (body_[node] >= 0 && is_whole[body_[node]] != 0)) continue;
+    if (is_on_face[node] != 0 || whole.contains(body[node])) continue;
     log_.drop(
         load.place, "BOUNDARY",
         fmt::format(
             "{}: component {} of node {}, {}", load.target, load.component + 1, mesh.node_numbers[node],
-            body_[node] < 0 ? "which belongs to no solid" : "which lies on no face that is held as a whole"),
+            body[node] < 0 ? "which belongs to no solid" : "which lies on no face that is held as a whole"),
         "a case holds faces: hold all nodes of some; against rigid motions alone a plane of symmetry, or "
         "a soft spring (boundary.NAME.spring), does");
     break;
   }
-  add_faces_across(load, is_whole, faces);
+  add_faces_across(load, whole, faces);
   return faces;
 }
 
-void CaseMaker::add_faces_across(const DeckLoad& load, const std::vector<char>& is_whole,
+void CaseMaker::add_faces_across(const DeckLoad& load, const std::set<Index>& whole,
                                  std::vector<Index>& faces)
 {
-  if (std::ranges::count(is_whole, 1) == 0) return;
+  if (whole.empty()) return;
   bool is_prism = load.course.is_constant() && load.course.last() == 0;
   for (std::size_t f = 0; f < faces_.size(); ++f)
   {
     const auto face = static_cast<Index>(f);
-    if (is_whole[body_[faces_.nodes(face).nodes[0]]] == 0) continue;
+    if (!whole.contains(whole_bodies_.bodies()[faces_.nodes(face).nodes[0]])) continue;
     constexpr double tolerance = 1e-6;
     const double along = std::abs(faces_.normal(face)[load.component]);
     if (along > 1 - tolerance) faces.push_back(face);
     is_prism = is_prism && (along > 1 - tolerance || along < tolerance);
   }
   sort_and_unite(faces);
-  is_prism = is_prism && are_corners_on(faces, is_whole);
+  is_prism = is_prism && are_corners_on(faces, whole);
   const std::string what =
       fmt::format("{}: component {} of all nodes of a body", load.target, load.component + 1);
   if (is_prism)
@@ -255,15 +248,15 @@ void CaseMaker::add_faces_across(const DeckLoad& load, const std::vector<char>& 
     log_.drop(load.place, "BOUNDARY", what + " is given, inside, too", "a case holds faces");
 }
 
-bool CaseMaker::are_corners_on(const std::vector<Index>& faces, const std::vector<char>& is_whole) const
+bool CaseMaker::are_corners_on(const std::vector<Index>& faces, const std::set<Index>& whole) const
 {
-  std::vector<char> is_on(body_.size(), 0);
+  std::vector<char> is_on(whole_bodies_.bodies().size(), 0);
   for (const Index face : faces)
     for (const Index node : faces_.nodes(face).span()) is_on[node] = 1;
   for (const mesh::ElementBlock& block : assembler_.mesh().cells)
     for (std::size_t e = 0; e < block.size(); ++e)
       for (const Index node : block.element(e).first(mesh::table_of(block.type.shape).n_corners))
-        if (is_whole[body_[node]] != 0 && is_on[node] == 0) return false;
+        if (is_on[node] == 0 && whole.contains(whole_bodies_.bodies()[node])) return false;
   return true;
 }
 

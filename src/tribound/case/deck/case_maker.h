@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,11 +31,7 @@ class CaseMaker
 {
  public:
   CaseMaker(const Deck& deck, mesh::InpAssembler& assembler, const DeckFaces& faces, DeckLog& log)
-      : deck_(deck),
-        assembler_(assembler),
-        faces_(faces),
-        log_(log),
-        body_(mesh::bodies_of_nodes(assembler.mesh()))
+      : deck_(deck), assembler_(assembler), faces_(faces), log_(log), whole_bodies_(assembler.mesh())
   {
   }
 
@@ -58,10 +55,10 @@ class CaseMaker
   void find_boundaries();
   [[nodiscard]] std::vector<Index> faces_of_displacement(const DeckLoad& load);
   /// The faces of bodies all of whose nodes are held in one direction that lie across it.
-  void add_faces_across(const DeckLoad& load, const std::vector<char>& is_whole, std::vector<Index>& faces);
+  void add_faces_across(const DeckLoad& load, const std::set<Index>& whole, std::vector<Index>& faces);
 
   /// Whether all corners of these bodies lie on the faces.
-  [[nodiscard]] bool are_corners_on(const std::vector<Index>& faces, const std::vector<char>& is_whole) const;
+  [[nodiscard]] bool are_corners_on(const std::vector<Index>& faces, const std::set<Index>& whole) const;
   [[nodiscard]] const DeckMaterial* material_of(const std::string& region) const;
   [[nodiscard]] Node material(const Groups::Part& region) const;
   [[nodiscard]] Node::Table load(const Groups::Part& region) const;
@@ -93,7 +90,7 @@ class CaseMaker
   mesh::InpAssembler& assembler_;
   const DeckFaces& faces_;
   DeckLog& log_;
-  std::vector<Index> body_;  ///< of each node: mesh::bodies_of_nodes()
+  mesh::WholeBodies whole_bodies_;
   Groups cell_groups_{};
   Groups face_groups_{};
   std::vector<Groups::Part> regions_{};

@@ -12,6 +12,7 @@
 
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/gmsh_elements.h"
+#include "tribound/mesh/import/cell_sets.h"
 
 namespace tribound::io
 {
@@ -44,11 +45,11 @@ class MshText
     for (std::size_t s = 0; s < mesh_.facet_sets.size(); ++s)
       for (const mesh::ElementBlock& block : mesh_.facet_sets[s].facets)
         add_elements(block, [s](std::size_t) { return s + 1; });
-    const std::vector<std::size_t> region = regions();
+    const std::vector<Index> region = mesh::set_of_cells(mesh_);
     std::size_t first = 0;
     for (const mesh::ElementBlock& block : mesh_.cells)
     {
-      add_elements(block, [&](std::size_t e) { return region[first + e]; });
+      add_elements(block, [&](std::size_t e) { return static_cast<std::size_t>(region[first + e] + 1); });
       first += block.size();
     }
     add("$EndElements\n");
@@ -92,17 +93,6 @@ class MshText
       if (const Point<3>& x = mesh_.nodes[i]; number_[i] > 0)
         add("{} {} {} {}\n", number_[i], x[0], x[1], x[2]);
     add("$EndNodes\n");
-  }
-
-  /// The physical group of every cell; 0: none.
-  [[nodiscard]] std::vector<std::size_t> regions() const
-  {
-    std::size_t n = 0;
-    for (const mesh::ElementBlock& block : mesh_.cells) n += block.size();
-    std::vector<std::size_t> region(n, 0);
-    for (std::size_t s = 0; s < mesh_.cell_sets.size(); ++s)
-      for (const Index cell : mesh_.cell_sets[s].cells) region[cell] = s + 1;
-    return region;
   }
 
   /// The elementary entity has the number of the group: in this version an entity is in one group.

@@ -7,6 +7,16 @@
 namespace tribound::mesh
 {
 
+std::vector<Index> set_of_cells(const ImportedMesh& mesh)
+{
+  std::size_t n = 0;
+  for (const ElementBlock& block : mesh.cells) n += block.size();
+  std::vector<Index> result(n, -1);
+  for (std::size_t s = 0; s < mesh.cell_sets.size(); ++s)
+    for (const Index cell : mesh.cell_sets[s].cells) result[cell] = static_cast<Index>(s);
+  return result;
+}
+
 bool are_disjoint(std::span<const CellSet> sets, std::size_t n)
 {
   std::vector<char> is_taken(n, 0);

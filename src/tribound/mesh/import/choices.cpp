@@ -10,6 +10,7 @@
 
 #include "tribound/base/sorted.h"
 #include "tribound/mesh/describe.h"
+#include "tribound/mesh/import/cell_sets.h"
 
 namespace tribound::mesh
 {
@@ -20,15 +21,15 @@ namespace
 /// The nodes of the cells of each region; of all cells where there are no regions.
 std::vector<std::vector<Index>> nodes_of_regions(const ImportedMesh& mesh)
 {
-  std::vector<std::size_t> region;  // per cell
-  for (const ElementBlock& block : mesh.cells) region.resize(region.size() + block.size(), 0);
-  for (std::size_t s = 0; s < mesh.cell_sets.size(); ++s)
-    for (const Index cell : mesh.cell_sets[s].cells) region[cell] = s;
+  const std::vector<Index> set = set_of_cells(mesh);
   std::vector<std::vector<Index>> nodes(std::max<std::size_t>(mesh.cell_sets.size(), 1));
   std::size_t cell = 0;
   for (const ElementBlock& block : mesh.cells)
     for (std::size_t e = 0; e < block.size(); ++e, ++cell)
-      nodes[region[cell]].insert(nodes[region[cell]].end(), block.element(e).begin(), block.element(e).end());
+    {
+      std::vector<Index>& of_region = nodes[std::max(set[cell], 0)];
+      of_region.insert(of_region.end(), block.element(e).begin(), block.element(e).end());
+    }
   for (std::vector<Index>& of_region : nodes) sort_and_unite(of_region);
   return nodes;
 }

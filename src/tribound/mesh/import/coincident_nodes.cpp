@@ -5,24 +5,19 @@
 #include <tuple>
 #include <vector>
 
+#include "tribound/mesh/import/cell_sets.h"
+
 namespace tribound::mesh
 {
 
 std::size_t n_coincident(const ImportedMesh& mesh)
 {
-  std::vector<Index> set_of_cell;
-  for (std::size_t s = 0; s < mesh.cell_sets.size(); ++s)
-    for (const Index cell : mesh.cell_sets[s].cells)
-    {
-      set_of_cell.resize(std::max(set_of_cell.size(), static_cast<std::size_t>(cell) + 1), 0);
-      set_of_cell[cell] = static_cast<Index>(s);
-    }
+  const std::vector<Index> set_of_cell = set_of_cells(mesh);
   std::vector<Index> set_of_node(mesh.nodes.size(), -1);
   std::size_t cell = 0;
   for (const ElementBlock& block : mesh.cells)
     for (std::size_t e = 0; e < block.size(); ++e, ++cell)
-      for (const Index node : block.element(e))
-        set_of_node[node] = cell < set_of_cell.size() ? set_of_cell[cell] : 0;
+      for (const Index node : block.element(e)) set_of_node[node] = std::max(set_of_cell[cell], 0);
 
   std::vector<Index> order(mesh.nodes.size());
   std::iota(order.begin(), order.end(), 0);

@@ -36,6 +36,23 @@ std::vector<Index> bodies_of_nodes(const ImportedMesh& mesh)
   return parent;
 }
 
+WholeBodies::WholeBodies(const ImportedMesh& mesh) : body_(bodies_of_nodes(mesh)), size_(body_.size(), 0)
+{
+  for (const Index b : body_)
+    if (b >= 0) ++size_[b];
+}
+
+std::set<Index> WholeBodies::within(std::span<const Index> nodes) const
+{
+  std::map<Index, Index> count;
+  for (const Index node : nodes)
+    if (body_[node] >= 0) ++count[body_[node]];
+  std::set<Index> result;
+  for (const auto& [body, n] : count)
+    if (n == size_[body]) result.insert(body);
+  return result;
+}
+
 namespace
 {
 
@@ -71,19 +88,11 @@ class NodeSetFacets
 
   void leave_out_bodies()
   {
-    const std::vector<Index> body = bodies_of_nodes(mesh_);
-    std::vector<Index> size(body.size(), 0);
-    for (const Index b : body)
-      if (b >= 0) ++size[b];
+    const WholeBodies whole(mesh_);
     std::erase_if(mesh_.node_sets,
-                  [&](NodeSet& set)
+                  [&](const NodeSet& set)
                   {
-                    std::map<Index, Index> count;
-                    for (const Index node : set.nodes)
-                      if (body[node] >= 0) ++count[body[node]];
-                    const bool is_left_out =
-                        !set.has_facets && std::ranges::any_of(count, [&](const auto& entry)
-                                                               { return size[entry.first] == entry.second; });
+                    const bool is_left_out = !set.has_facets && !whole.within(set.nodes).empty();
                     if (is_left_out) bodies_.push_back(set.name);
                     return is_left_out;
                   });

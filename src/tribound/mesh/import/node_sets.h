@@ -3,6 +3,11 @@
 /// @file node_sets.h
 /// Node sets as boundaries.
 
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "tribound/mesh/import/imported_mesh.h"
 
 namespace tribound::mesh
@@ -10,6 +15,22 @@ namespace tribound::mesh
 
 /// For every node of a cell a node that stands for its body; -1 for other nodes.
 [[nodiscard]] std::vector<Index> bodies_of_nodes(const ImportedMesh& mesh);
+
+/// Finds the bodies all of whose nodes are in a set.
+class WholeBodies
+{
+ public:
+  explicit WholeBodies(const ImportedMesh& mesh);
+
+  /// As in bodies_of_nodes().
+  [[nodiscard]] std::span<const Index> bodies() const { return body_; }
+  /// The bodies, each by the node that stands for it; `nodes` without repetitions.
+  [[nodiscard]] std::set<Index> within(std::span<const Index> nodes) const;
+
+ private:
+  std::vector<Index> body_;
+  std::vector<Index> size_;  ///< of a body, at the node that stands for it
+};
 
 /// Turns the node sets of a mesh into facet sets: the outer facets of cells all of whose nodes, middles too,
 /// are in the set. Left out, with a note: sets without such a facet, sets that have all nodes of a body, and
