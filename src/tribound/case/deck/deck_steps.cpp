@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "tribound/base/sorted.h"
 #include "tribound/case/deck/deck_reader.h"
 
 namespace tribound::case_file
@@ -196,7 +197,7 @@ void DeckReader::read_boundary(const Block& block)
   }
   for (auto& [_, single] : singles)
   {
-    std::ranges::sort(single.second);
+    sort_and_unite(single.second);
     fix(block, *single.first, line_name(*single.first), single.second);
   }
   take(block, "displacements");
