@@ -165,17 +165,14 @@ double CaseMaker::reach_of_tie(const PairGroups& pair)
   // Surfaces of PRESSURE-OVERCLOSURE=TIED are pulled together whatever is between them.
   constexpr double rounding = 1e-6;
   const DistanceFromFaces distance(faces_, face_groups_.members(pair.master));
-  for (const Index face : face_groups_.members(pair.slave))
-    for (const Index node : faces_.nodes(face).span())
-      if (given.clearance || given.adjust ||
-          std::abs(distance(faces_.point(node))) > rounding * reach / share)
-      {
-        log_.drop(given.place, "CONTACT PAIR",
-                  fmt::format("{} and {} are TIED with a gap, which the deck closes by force", given.slave,
-                              given.master),
-                  "surfaces that touch");
-        return reach;
-      }
+  const auto is_apart = [&](Index node)
+  { return std::abs(distance(faces_.point(node))) > rounding * reach / share; };
+  if (given.clearance || given.adjust ||
+      std::ranges::any_of(faces_.nodes_on(face_groups_.members(pair.slave)), is_apart))
+    log_.drop(given.place, "CONTACT PAIR",
+              fmt::format("{} and {} are TIED with a gap, which the deck closes by force", given.slave,
+                          given.master),
+              "surfaces that touch");
   return reach;
 }
 
@@ -238,11 +235,9 @@ void CaseMaker::add_gap(const PairGroups& pair, Node::Table& table)
   }
   if (!given.adjust) return;
   const DistanceFromFaces distance(faces_, face_groups_.members(pair.master));
-  std::size_t n_beyond = 0;
-  for (const Index face : face_groups_.members(pair.slave))
-    for (const Index node : faces_.nodes(face).span())
-      n_beyond += distance(assembler_.mesh().nodes[node]) > *given.adjust * (1 + 1e-9) ? 1 : 0;
-  if (n_beyond == 0)
+  const auto is_beyond = [&](Index node)
+  { return distance(faces_.point(node)) > *given.adjust * (1 + 1e-9); };
+  if (std::ranges::none_of(faces_.nodes_on(face_groups_.members(pair.slave)), is_beyond))
   {
     put(table, "gap", {0.0, {}});
     log_.add(

@@ -205,8 +205,7 @@ std::vector<Index> CaseMaker::faces_of_displacement(const DeckLoad& load)
   std::vector<Index> faces = faces_.with_all_nodes(load.members);
   std::erase_if(faces, [&](Index face) { return whole.contains(body[faces_.nodes(face).nodes[0]]); });
   std::vector<char> is_on_face(body.size(), 0);
-  for (const Index face : faces)
-    for (const Index node : faces_.nodes(face).span()) is_on_face[node] = 1;
+  for (const Index node : faces_.nodes_on(faces)) is_on_face[node] = 1;
   for (const Index node : load.members)
   {
     if (is_on_face[node] != 0 || whole.contains(body[node])) continue;
@@ -251,8 +250,7 @@ void CaseMaker::add_faces_across(const DeckLoad& load, const std::set<Index>& wh
 bool CaseMaker::are_corners_on(const std::vector<Index>& faces, const std::set<Index>& whole) const
 {
   std::vector<char> is_on(whole_bodies_.bodies().size(), 0);
-  for (const Index face : faces)
-    for (const Index node : faces_.nodes(face).span()) is_on[node] = 1;
+  for (const Index node : faces_.nodes_on(faces)) is_on[node] = 1;
   for (const mesh::ElementBlock& block : assembler_.mesh().cells)
     for (std::size_t e = 0; e < block.size(); ++e)
       for (const Index node : block.element(e).first(mesh::table_of(block.type.shape).n_corners))

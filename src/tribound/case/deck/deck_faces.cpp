@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "tribound/base/sorted.h"
+
 namespace tribound::case_file
 {
 
@@ -161,11 +163,26 @@ bool DeckFaces::is_curved(Index face) const
   return false;
 }
 
+std::vector<Index> DeckFaces::nodes_on(std::span<const Index> faces) const
+{
+  std::vector<Index> result;
+  for (const Index face : faces)
+  {
+    const FaceNodes of_face = nodes(face);
+    result.insert(result.end(), of_face.span().begin(), of_face.span().end());
+  }
+  sort_and_unite(result);
+  return result;
+}
+
 std::vector<std::vector<Index>> DeckFaces::connected(std::span<const Index> faces) const
 {
   std::map<Index, std::vector<Index>> faces_of_node;
   for (const Index face : faces)
-    for (const Index node : nodes(face).span()) faces_of_node[node].push_back(face);
+  {
+    const FaceNodes of_face = nodes(face);
+    for (const Index node : of_face.span()) faces_of_node[node].push_back(face);
+  }
   std::map<Index, bool> is_reached;
   std::vector<std::vector<Index>> result;
   for (const Index first : faces)

@@ -37,6 +37,8 @@ class DeckFaces
   /// Those all of whose nodes that carry a part of a uniform load are among the given ones: of a triangle of
   /// 6 nodes the middles alone do.
   [[nodiscard]] std::vector<Index> loaded_by(std::span<const Index> nodes) const;
+  /// The nodes of these faces, ascending.
+  [[nodiscard]] std::vector<Index> nodes_on(std::span<const Index> faces) const;
   /// The integrals of the shape functions over a face, node by node: what a uniform load is at the nodes.
   [[nodiscard]] std::vector<double> weights(Index face) const;
   /// The outward unit normal, at the centre.

@@ -25,12 +25,8 @@ void DeckReader::read_rigid_body(const Block& block)
   const std::vector<Index> nodes = assembler_.nodes_named(*set, block.keyword.place);
   DeckRigid rigid{block.keyword.place, *set, faces_.with_all_nodes(nodes), node_of(block, "REFNODE")};
   if (block.keyword.find("ROTNODE")) rigid.rotation = node_of(block, "ROTNODE");
-  std::vector<Index> reached;
-  for (const Index face : rigid.faces)
-    for (const Index node : faces_.nodes(face).span()) reached.push_back(node);
-  std::ranges::sort(reached);
   std::vector<Index> lone;
-  std::ranges::set_difference(nodes, reached, std::back_inserter(lone));
+  std::ranges::set_difference(nodes, faces_.nodes_on(rigid.faces), std::back_inserter(lone));
   std::erase(lone, rigid.reference);
   std::erase(lone, rigid.rotation);
   if (!lone.empty())

@@ -33,7 +33,8 @@ struct FaceNodes
   ElementType type;
   std::array<Index, 9> nodes;
 
-  [[nodiscard]] std::span<const Index> span() const { return std::span(nodes).first(type.n_nodes); }
+  [[nodiscard]] std::span<const Index> span() const& { return std::span(nodes).first(type.n_nodes); }
+  void span() const&& = delete;  ///< would outlive the nodes
 };
 
 [[nodiscard]] FaceNodes nodes_of(std::span<const ElementBlock> cells, const CellFace& face);

@@ -77,7 +77,8 @@ struct FaceElement
   ElementType type;
   std::array<int, 9> nodes;  ///< places among the nodes of the cell; the first type.n_nodes count
 
-  [[nodiscard]] std::span<const int> span() const { return std::span(nodes).first(type.n_nodes); }
+  [[nodiscard]] std::span<const int> span() const& { return std::span(nodes).first(type.n_nodes); }
+  void span() const&& = delete;  ///< would outlive the nodes
 };
 
 [[nodiscard]] FaceElement face_element(const ElementType& type, int face);
