@@ -49,6 +49,17 @@ void write_cylinder_and_cube(const std::filesystem::path& file)
       });
 }
 
+/// Into the present model.
+void add_cubes_with_a_common_face()
+{
+  gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
+  gmsh::model::occ::addBox(0, 0, 1, 1, 1, 1);
+  std::vector<std::pair<int, int>> parts;
+  std::vector<std::vector<std::pair<int, int>>> map;
+  gmsh::model::occ::fragment({{3, 1}}, {{3, 2}}, parts, map);
+  gmsh::model::occ::synchronize();
+}
+
 mesh::Survey survey_of(const mesh::MeshFile& file, std::vector<std::string>* notes = nullptr)
 {
   std::vector<std::string> said;
@@ -126,12 +137,7 @@ TEST(Cad, SolidsThatShareAFaceAreOneBody)
   with_gmsh(
       [&]
       {
-        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
-        gmsh::model::occ::addBox(0, 0, 1, 1, 1, 1);
-        std::vector<std::pair<int, int>> parts;
-        std::vector<std::vector<std::pair<int, int>>> map;
-        gmsh::model::occ::fragment({{3, 1}}, {{3, 2}}, parts, map);
-        gmsh::model::occ::synchronize();
+        add_cubes_with_a_common_face();
         gmsh::write(file.path.string());
       });
   file.options.size = 0.6;
@@ -245,12 +251,7 @@ TEST(Cad, MeshesOfOtherProgramsKeepTheirNumbersOrNames)
       with_gmsh(
           [&]
           {
-            gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
-            gmsh::model::occ::addBox(0, 0, 1, 1, 1, 1);
-            std::vector<std::pair<int, int>> parts;
-            std::vector<std::vector<std::pair<int, int>>> map;
-            gmsh::model::occ::fragment({{3, 1}}, {{3, 2}}, parts, map);
-            gmsh::model::occ::synchronize();
+            add_cubes_with_a_common_face();
             std::vector<std::pair<int, int>> base;
             gmsh::model::getEntitiesInBoundingBox(-1, -1, -0.1, 2, 2, 0.1, base, 2);
             gmsh::model::addPhysicalGroup(3, {1}, 7);

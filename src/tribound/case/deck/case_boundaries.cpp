@@ -134,8 +134,8 @@ Node::Table CaseMaker::boundary(const Groups::Part& part) const
 Node CaseMaker::sides(int group) const
 {
   std::vector<Node> names;
-  for (const Groups::Part& part : boundaries_)
-    if (part.is_in(group) && boundary(part).empty()) names.push_back({part.name, {}});
+  for (std::size_t k = 0; k < boundaries_.size(); ++k)
+    if (boundaries_[k].is_in(group) && tables_[k].empty()) names.push_back({boundaries_[k].name, {}});
   if (names.size() == 1) return names[0];
   return {std::move(names), {}};
 }
@@ -188,11 +188,11 @@ Node::Table CaseMaker::contact(const PairGroups& pair)
       log_.refuse(pair.pair->place, keyword,
                   fmt::format("all of {} is held or loaded", face_groups_.name(group)));
     put(table, key, std::move(names));
-    for (const Groups::Part& part : boundaries_)
-      if (part.is_in(group) && !boundary(part).empty())
+    for (std::size_t k = 0; k < boundaries_.size(); ++k)
+      if (boundaries_[k].is_in(group) && !tables_[k].empty())
         log_.drop(pair.pair->place, keyword,
                   fmt::format("a part of {} is held or loaded, and does not touch: {}",
-                              face_groups_.name(group), part.name),
+                              face_groups_.name(group), boundaries_[k].name),
                   "contact, supports and loads on separate faces");
   }
   if (pair.interaction == nullptr)

@@ -52,6 +52,8 @@ Node::Table CaseMaker::make()
   find_regions();
   find_boundaries();
   find_history();
+  tables_.reserve(boundaries_.size());
+  for (const Groups::Part& part : boundaries_) tables_.push_back(boundary(part));
   Node::Table document;
   if (!deck_.title.empty()) put(document, "title", text_node(deck_.title));
   Node::Table materials;
@@ -67,8 +69,8 @@ Node::Table CaseMaker::make()
   Node::Array contacts;
   for (const PairGroups& pair : pairs_) contacts.push_back({contact(pair), {}});
   Node::Table tables;
-  for (const Groups::Part& part : boundaries_)
-    if (Node::Table table = boundary(part); !table.empty()) put(tables, part.name, {std::move(table), {}});
+  for (std::size_t k = 0; k < boundaries_.size(); ++k)
+    if (!tables_[k].empty()) put(tables, boundaries_[k].name, {tables_[k], {}});
   if (!tables.empty()) put(document, "boundary", {std::move(tables), {}});
   if (!contacts.empty()) put(document, "contact", {std::move(contacts), {}});
   if (!shapes_.empty()) put(document, "shape", {std::move(shapes_), {}});

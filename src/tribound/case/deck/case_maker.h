@@ -95,7 +95,8 @@ class CaseMaker
   Groups face_groups_{};
   std::vector<Groups::Part> regions_{};
   std::vector<Groups::Part> boundaries_{};
-  std::vector<int> group_of_load_{};  ///< -1: none
+  std::vector<Node::Table> tables_{};  ///< of the boundaries; empty for those that only touch
+  std::vector<int> group_of_load_{};   ///< -1: none
   std::vector<int> group_of_rigid_{};
   std::vector<PairGroups> pairs_{};
   std::map<std::string, mesh::InpSection> sections_{};  ///< by the name of the region

@@ -139,26 +139,13 @@ Deck DeckReader::read()
 double DeckReader::number(const Line& line, std::size_t field, double missing) const
 {
   if (field >= line.fields.size() || line.fields[field].empty()) return missing;
-  const std::optional<double> value = mesh::number_of(line.fields[field]);
-  if (!value || !std::isfinite(*value))
-    assembler_.lines().fail(line.place,
-                            fmt::format("\"{}\" is not a number", line.fields[field].substr(0, 80)));
-  return *value;
+  return assembler_.lines().number(line.fields[field], line.place);
 }
 
 const std::string& DeckReader::field(const Line& line, std::size_t field) const
 {
   static const std::string empty;
   return field < line.fields.size() ? line.fields[field] : empty;
-}
-
-std::string DeckReader::required(const Block& block, std::string_view parameter) const
-{
-  const std::optional<std::string> value = block.keyword.find(parameter);
-  if (!value || value->empty())
-    assembler_.lines().fail(block.keyword.place, fmt::format("*{} without {}", block.keyword.name, parameter),
-                            fmt::format("*{}, {}=...", block.keyword.name, parameter));
-  return *value;
 }
 
 std::string DeckReader::line_name(const Line& line) const

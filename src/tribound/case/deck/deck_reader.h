@@ -96,7 +96,10 @@ class DeckReader
 
   [[nodiscard]] double number(const Line& line, std::size_t field, double missing = 0) const;
   [[nodiscard]] const std::string& field(const Line& line, std::size_t field) const;
-  [[nodiscard]] std::string required(const Block& block, std::string_view parameter) const;
+  [[nodiscard]] std::string required(const Block& block, std::string_view parameter) const
+  {
+    return assembler_.lines().required(block.keyword, parameter);
+  }
   [[nodiscard]] std::vector<Index> outer(const std::vector<mesh::FaceNodes>& faces,
                                          const mesh::InpPlace& place) const;
   [[nodiscard]] std::string line_name(const Line& line) const;

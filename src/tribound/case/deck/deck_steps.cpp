@@ -62,7 +62,7 @@ void DeckReader::read_static(const Block& block)
   take(block, fmt::format("t from {} to {}", step.begin, step.end));
 }
 
-void DeckReader::end_step(const Block& block)
+void DeckReader::end_step(const Block& /*block*/)
 {
   if (!in_step_) return;
   in_step_ = false;
@@ -74,7 +74,6 @@ void DeckReader::end_step(const Block& block)
     if (load.is_active && !load.is_in_step && renewed_.contains(load.kind)) end_load(load, step);
     follow(load);
   }
-  static_cast<void>(block);
 }
 
 void DeckReader::end_load(DeckLoad& load, const DeckStep& step)

@@ -17,6 +17,13 @@ std::vector<Index> set_of_cells(const ImportedMesh& mesh)
   return result;
 }
 
+std::int64_t number_of_cell(const ImportedMesh& mesh, Index cell)
+{
+  auto block = mesh.cells.begin();
+  for (; static_cast<std::size_t>(cell) >= block->size(); ++block) cell -= static_cast<Index>(block->size());
+  return block->numbers[cell];
+}
+
 bool are_disjoint(std::span<const CellSet> sets, std::size_t n)
 {
   std::vector<char> is_taken(n, 0);

@@ -18,6 +18,9 @@ namespace tribound::mesh
 /// The set of every cell, of a mesh whose sets are disjoint; -1: none.
 [[nodiscard]] std::vector<Index> set_of_cells(const ImportedMesh& mesh);
 
+/// The number of a cell in the file.
+[[nodiscard]] std::int64_t number_of_cell(const ImportedMesh& mesh, Index cell);
+
 /// Whether no cell of 0 ... n - 1 is in two sets, nor twice in one.
 [[nodiscard]] bool are_disjoint(std::span<const CellSet> sets, std::size_t n);
 

@@ -22,12 +22,17 @@ std::string content_of(const std::filesystem::path& file, const Where& where, co
   return content;
 }
 
+std::string small_letters(std::string_view text)
+{
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
+
 std::string suffix_of(const std::filesystem::path& file)
 {
-  std::string suffix = file.extension().string();
-  for (char& c : suffix)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return suffix;
+  return small_letters(file.extension().string());
 }
 
 bool is_utf8(std::string_view name)

@@ -18,6 +18,8 @@ namespace tribound::mesh
 [[nodiscard]] std::string content_of(const std::filesystem::path& file, const Where& where,
                                      const std::string& hint);
 
+/// In small letters (ASCII).
+[[nodiscard]] std::string small_letters(std::string_view text);
 /// ".step" of "Part.STEP".
 [[nodiscard]] std::string suffix_of(const std::filesystem::path& file);
 

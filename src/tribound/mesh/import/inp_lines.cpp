@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace tribound::mesh
@@ -90,6 +91,23 @@ void InpLines::include(const std::string& name)
 Where InpLines::where(const InpPlace& place) const
 {
   return {.file = files_[place.file].string(), .line = place.line};
+}
+
+std::string InpLines::required(const InpKeyword& keyword, std::string_view parameter) const
+{
+  const std::optional<std::string> value = keyword.find(parameter);
+  if (!value || value->empty())
+    fail(keyword.place, fmt::format("*{} without {}", keyword.name, parameter),
+         fmt::format("*{}, {}=...", keyword.name, parameter));
+  return *value;
+}
+
+double InpLines::number(std::string_view field, const InpPlace& place) const
+{
+  const std::optional<double> value = number_of(field);
+  if (!value || !std::isfinite(*value))
+    fail(place, fmt::format("\"{}\" is not a number", field.substr(0, 80)));
+  return *value;
 }
 
 bool InpLines::read_line()

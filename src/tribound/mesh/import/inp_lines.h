@@ -60,6 +60,10 @@ class InpLines
   /// All files so far.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
   [[nodiscard]] Where where(const InpPlace& place) const;
+  /// The value of a parameter. Throws InputError if it is not given or empty.
+  [[nodiscard]] std::string required(const InpKeyword& keyword, std::string_view parameter) const;
+  /// A finite number. Throws InputError.
+  [[nodiscard]] double number(std::string_view field, const InpPlace& place) const;
   [[noreturn]] void fail(const InpPlace& place, const std::string& problem,
                          const std::string& hint = {}) const
   {

@@ -93,15 +93,6 @@ void InpParser::refuse(const InpKeyword& keyword)
               "write the mesh with all its nodes and elements, as preprocessors and ccx do");
 }
 
-std::string InpParser::required(const InpKeyword& keyword, std::string_view parameter) const
-{
-  const std::optional<std::string> value = keyword.find(parameter);
-  if (!value || value->empty())
-    lines_.fail(keyword.place, fmt::format("*{} without {}", keyword.name, parameter),
-                fmt::format("*{}, {}=...", keyword.name, parameter));
-  return *value;
-}
-
 const std::string& InpParser::checked_name(const std::string& name, const InpPlace& place) const
 {
   if (!is_utf8(name))
@@ -113,14 +104,6 @@ std::int64_t InpParser::integer(std::string_view field) const
 {
   const std::optional<std::int64_t> value = integer_of(field);
   if (!value) lines_.fail(lines_.place(), fmt::format("\"{}\" is not an integer", field.substr(0, 80)));
-  return *value;
-}
-
-double InpParser::number(std::string_view field) const
-{
-  const std::optional<double> value = number_of(field);
-  if (!value || !std::isfinite(*value))
-    lines_.fail(lines_.place(), fmt::format("\"{}\" is not a number", field.substr(0, 80)));
   return *value;
 }
 
@@ -139,7 +122,7 @@ void InpParser::read_nodes(const InpKeyword& keyword)
       lines_.fail(lines_.place(), fmt::format("a node with {} numbers", fields.size()), "number, x, y, z");
     Point<3> x = Point<3>::Zero();
     for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 4); ++i)
-      if (!fields[i].empty()) x[static_cast<Index>(i) - 1] = number(fields[i]);
+      if (!fields[i].empty()) x[static_cast<Index>(i) - 1] = lines_.number(fields[i], lines_.place());
     const std::int64_t n = integer(fields[0]);
     part().node_numbers.push_back(n);
     part().nodes.push_back(x);
@@ -150,7 +133,7 @@ void InpParser::read_nodes(const InpKeyword& keyword)
 
 void InpParser::read_elements(const InpKeyword& keyword)
 {
-  const std::string type = capitals(required(keyword, "TYPE"));
+  const std::string type = capitals(lines_.required(keyword, "TYPE"));
   InpElements elements{.type_name = type, .family = {}, .type = {}, .set = -1};
   const bool is_read = find_type(type, elements);
   if (const auto file = keyword.find("INPUT")) lines_.include(*file);

@@ -45,13 +45,11 @@ class InpParser
   void read_block(const InpKeyword& keyword);
   void refuse(const InpKeyword& keyword);
 
-  [[nodiscard]] std::string required(const InpKeyword& keyword, std::string_view parameter) const;
   /// A name that can be shown.
   [[nodiscard]] const std::string& checked_name(const std::string& name, const InpPlace& place) const;
   /// "5", "body", "part-1.5" or "part-1.body" as members of sets of one kind.
   [[nodiscard]] InpMembers members_of(std::string_view field, int instance, InpSets InpPart::*kind) const;
   [[nodiscard]] std::int64_t integer(std::string_view field) const;
-  [[nodiscard]] double number(std::string_view field) const;
 
   InpLines& lines_;
   InpOptions options_;

@@ -23,7 +23,7 @@ InpMembers InpParser::members_of(std::string_view field, int instance, InpSets I
 
 void InpParser::read_set(const InpKeyword& keyword, InpSets& sets, const std::string& parameter)
 {
-  const std::string name = required(keyword, parameter);
+  const std::string name = lines_.required(keyword, parameter);
   int instance = -1;
   if (const auto of = keyword.find("INSTANCE"))
     if (instance = model_.instance_named(*of); instance < 0)
@@ -61,7 +61,7 @@ void InpParser::read_set(const InpKeyword& keyword, InpSets& sets, const std::st
 
 void InpParser::read_surface(const InpKeyword& keyword)
 {
-  const std::string name = required(keyword, "NAME");
+  const std::string name = lines_.required(keyword, "NAME");
   const std::string type = capitals(keyword.find("TYPE").value_or("ELEMENT"));
   if ((type != "ELEMENT" && type != "NODE") || keyword.find("COMBINE") || keyword.find("CROP"))
     lines_.fail(keyword.place, fmt::format("surface \"{}\" is neither of elements nor of nodes", name),
@@ -115,7 +115,7 @@ void InpParser::begin_part(const InpKeyword& keyword)
 {
   if (part_ != 0)
     lines_.fail(keyword.place, fmt::format("a part inside part \"{}\"", part().name), "*END PART is missing");
-  const std::string name = checked_name(required(keyword, "NAME"), keyword.place);
+  const std::string name = checked_name(lines_.required(keyword, "NAME"), keyword.place);
   for (const InpPart& other : model_.parts)
     if (capitals(other.name) == capitals(name))
       lines_.fail(keyword.place, fmt::format("there are two parts \"{}\"", name));
@@ -132,8 +132,8 @@ void InpParser::end_part(const InpKeyword& keyword)
 /// x -> R (x + t - a) + a: first the translation t, then the rotation about the axis through a.
 void InpParser::read_instance(const InpKeyword& keyword)
 {
-  InpInstance instance{checked_name(required(keyword, "NAME"), keyword.place), -1, keyword.place};
-  const std::string name = capitals(required(keyword, "PART"));
+  InpInstance instance{checked_name(lines_.required(keyword, "NAME"), keyword.place), -1, keyword.place};
+  const std::string name = capitals(lines_.required(keyword, "PART"));
   for (std::size_t p = 1; p < model_.parts.size(); ++p)
     if (capitals(model_.parts[p].name) == name) instance.part = static_cast<int>(p);
   if (instance.part < 0 || part_ != 0)
@@ -150,7 +150,8 @@ void InpParser::read_instance(const InpKeyword& keyword)
           lines_.place(),
           "an instance has a line of 3 numbers and one of 7: translation; two points of an axis, angle");
     std::array<double, 7> x{};
-    for (std::size_t i = 0; i < fields.size(); ++i) x[i] = fields[i].empty() ? 0 : number(fields[i]);
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      x[i] = fields[i].empty() ? 0 : lines_.number(fields[i], lines_.place());
     if (line == 0)
     {
       instance.shift = Point<3>(x[0], x[1], x[2]);

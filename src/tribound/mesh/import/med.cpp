@@ -92,7 +92,6 @@ class MedReader
   [[nodiscard]] std::vector<std::int64_t> families_of(const Hdf5Group& group, std::size_t n) const;
   [[nodiscard]] std::vector<std::int64_t> numbers_of(const Hdf5Group& group, std::size_t n) const;
   void add_cells();
-  [[nodiscard]] std::int64_t number_of(Index cell) const;
   void add_facets();
   void add_node_sets();
 
@@ -265,16 +264,9 @@ void MedReader::add_cells()
   const auto all = std::ranges::find_if(sets, [n](const CellSet& set) { return std::ssize(set.cells) == n; });
   if (all == sets.end())
     fail(fmt::format("the groups do not say which region an element is in: {}",
-                     fault_of_partition(sets, n, [&](Index cell) { return number_of(cell); })),
+                     fault_of_partition(sets, n, [&](Index cell) { return number_of_cell(mesh_, cell); })),
          "groups of solids (in 2D of faces) that have every element once; or take out the others");
   mesh_.cell_sets = {*all};
-}
-
-std::int64_t MedReader::number_of(Index cell) const
-{
-  auto block = mesh_.cells.begin();
-  for (; cell >= std::ssize(block->numbers); ++block) cell -= static_cast<Index>(block->numbers.size());
-  return block->numbers[cell];
 }
 
 void MedReader::add_facets()

@@ -9,6 +9,7 @@
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/import/cell_faces.h"
+#include "tribound/mesh/import/cell_sets.h"
 #include "tribound/mesh/import/node_sets.h"
 #include "tribound/mesh/verify.h"
 
@@ -192,15 +193,6 @@ void Converter<dim>::find_regions()
 {
   std::size_t n_cells = 0;
   for (const ElementBlock& block : mesh_.cells) n_cells += block.size();
-  const auto element = [&](std::size_t cell)
-  {
-    for (const ElementBlock& block : mesh_.cells)
-    {
-      if (cell < block.size()) return block.numbers[cell];
-      cell -= block.size();
-    }
-    return std::int64_t{-1};
-  };
   region_of_cell_.assign(n_cells, mesh_.cell_sets.empty() ? 0 : -1);
   for (const CellSet& set : mesh_.cell_sets)
   {
@@ -210,8 +202,8 @@ void Converter<dim>::find_regions()
     {
       if (const int other = region_of_cell_[cell]; other >= 0 && other != region)
         throw InputError(mesh_.source,
-                         fmt::format("element {} is in two regions, \"{}\" and \"{}\"", element(cell),
-                                     data_.region_names[other], set.name),
+                         fmt::format("element {} is in two regions, \"{}\" and \"{}\"",
+                                     number_of_cell(mesh_, cell), data_.region_names[other], set.name),
                          "every element is in one region: take it out of the other");
       region_of_cell_[cell] = region;
     }
@@ -219,7 +211,8 @@ void Converter<dim>::find_regions()
   if (mesh_.cell_sets.empty()) data_.region_names = {"domain"};
   if (const auto none = std::ranges::find(region_of_cell_, -1); none != region_of_cell_.end())
     throw InputError(mesh_.source,
-                     fmt::format("element {} is in no region", element(none - region_of_cell_.begin())),
+                     fmt::format("element {} is in no region",
+                                 number_of_cell(mesh_, static_cast<Index>(none - region_of_cell_.begin()))),
                      "put every element into a region, or use no regions at all");
 }
 

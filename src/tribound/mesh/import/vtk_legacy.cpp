@@ -50,14 +50,6 @@ VtkLegacy::VtkLegacy(const std::filesystem::path& path, VtkFile& file)
   content_ = *file.contents.back();
 }
 
-std::string VtkLegacy::lower(std::string_view word)
-{
-  std::string result(word);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
-
 std::string_view VtkLegacy::next_line()
 {
   const std::string_view rest = content_.substr(at_);
@@ -104,14 +96,14 @@ void VtkLegacy::read_header()
   version_ = *version;
   piece_.has_old_hexahedra = version_ < 5.1;
   (void)next_line();  // the title
-  const std::string format = lower(next_word());
+  const std::string format = small_letters(next_word());
   if (format != "ascii" && format != "binary")
     fail(fmt::format("has \"{}\" where ASCII or BINARY is needed", format.substr(0, 40)));
   coding_.format = format == "ascii" ? VtkCoding::Format::text : VtkCoding::Format::raw;
   coding_.is_swapped = std::endian::native == std::endian::little;
-  const std::string keyword = lower(next_word());
+  const std::string keyword = small_letters(next_word());
   const std::string_view type = next_word();
-  if (keyword != "dataset" || lower(type) != "unstructured_grid")
+  if (keyword != "dataset" || small_letters(type) != "unstructured_grid")
     fail(fmt::format("has the dataset \"{}\", not UNSTRUCTURED_GRID", type.substr(0, 40)),
          "ParaView's filter Append Datasets makes an unstructured grid of other ones");
 }
@@ -133,7 +125,7 @@ VtkArray VtkLegacy::next_array(const std::string& name, const std::string& type,
                                std::size_t n_components)
 {
   const auto known =
-      std::ranges::find(legacy_types, lower(type), &std::pair<std::string_view, VtkType>::first);
+      std::ranges::find(legacy_types, small_letters(type), &std::pair<std::string_view, VtkType>::first);
   if (known == legacy_types.end())
     fail(fmt::format("array \"{}\" is of type \"{}\", which is not read", name, type.substr(0, 40)),
          "leave it out, or save the file as .vtu");
@@ -193,7 +185,8 @@ void VtkLegacy::read_section(const std::string& word)
 void VtkLegacy::read()
 {
   read_header();
-  for (std::string word = lower(next_word()); !word.empty(); word = lower(next_word())) read_section(word);
+  for (std::string word = small_letters(next_word()); !word.empty(); word = small_letters(next_word()))
+    read_section(word);
   piece_.where = where_;
   if (piece_.n_cells > 0) file_.pieces.push_back(std::move(piece_));
 }

@@ -23,7 +23,6 @@ class VtkLegacy
 
  private:
   static constexpr std::string_view blanks = " \t\r\n\v\f";
-  static std::string lower(std::string_view word);
   [[noreturn]] void fail(const std::string& problem, const std::string& hint = {}) const
   {
     throw InputError(where_, problem, hint);

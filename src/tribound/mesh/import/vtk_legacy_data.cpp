@@ -54,7 +54,7 @@ void VtkLegacy::read_cells()
   {
     if (n == 0) return;
     const std::string_view word = next_word();
-    if (lower(word) != name)
+    if (small_letters(word) != name)
       fail(fmt::format("has \"{}\" where the {} of the cells are needed", word.substr(0, 40), name));
     *array = next_array(name, last_word(), count, 1);
     if (!is_integer(array->type)) fail(fmt::format("the {} of the cells are no integers", name));
@@ -95,7 +95,7 @@ void VtkLegacy::read_scalars(const std::string& name)
   const std::size_t n_components =
       digit < line.size() && line[digit] >= '1' && line[digit] <= '9' ? line[digit] - '0' : 1;
   const std::size_t begin = at_;
-  if (lower(next_word()) == "lookup_table")
+  if (small_letters(next_word()) == "lookup_table")
     (void)next_line();
   else
     at_ = begin;
