@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/command/commands.h"
+#include "app/command/run.h"
 #include "app/console/text.h"
 #include "app/result/case_schema.h"
 #include "app/shared_file.h"
@@ -182,7 +183,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
 {
   require_address_space();
   const std::string command = app.get_subcommands().front()->get_name();
-  if (command == "run") return run(arguments, arguments.restart);
+  if (command == "run") return run(arguments, arguments.restart, {});
   if (n_processes() > 1)
   {
     const bool needs_one = command == "verify" || command == "study" || command == "sweep";

@@ -12,8 +12,15 @@
 
 #include "tribound/mesh/source.h"
 
+namespace tribound::case_file
+{
+struct Node;
+}
+
 namespace tribound::app
 {
+
+struct RunHooks;
 
 /// Exit codes, a contract with scripts.
 enum class ExitCode
@@ -43,12 +50,17 @@ void prepare_signals();
 /// complete level. A second signal ends the program at once.
 [[nodiscard]] const std::atomic<bool>& stop_on_signals();
 
+/// From now on the flag is set, as by a signal; then again as it was at first.
+void request_stop();
+void forget_stop();
+
 /// The case of a command. All commands throw InputError for bad input.
 struct CaseRequest
 {
-  std::string case_file;
+  std::string case_file;               ///< of a document: the name that messages give
   std::vector<std::string> overrides;  ///< key=value
   bool quiet = false;
+  const case_file::Node* document = nullptr;  ///< the case, in place of the file
 };
 
 /// `tribound run`: solves the case and writes its results, see app/command/run.h, on all processes that were
@@ -56,7 +68,7 @@ struct CaseRequest
 /// the case there instead. The first process reads the mesh, prints, and writes everything that is not
 /// written by each. A failure on all processes is reported by the first; a failure on one process alone ends
 /// all. On a single process it throws InputError, SolveError and WriteError.
-[[nodiscard]] ExitCode run(const CaseRequest& request, const std::string& restart);
+[[nodiscard]] ExitCode run(const CaseRequest& request, const std::string& restart, const RunHooks& hooks);
 
 /// `tribound check`: reads and verifies everything `run` would, and prints a summary with the findings of the
 /// doctor, as text or as JSON.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/command/commands.h"
+#include "app/host.h"
 
 namespace tribound::app
 {
@@ -20,7 +21,7 @@ std::atomic<bool> stop_requested = false;
 
 constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGUSR1};  // the last one comes by way of mpirun
 
-void request_stop(int)
+void stop_once(int)
 {
   stop_requested = true;
   for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
@@ -64,8 +65,18 @@ void prepare_signals()
 const std::atomic<bool>& stop_on_signals()
 {
   for (const int signal : stop_signals)
-    if (!stop_requested) std::signal(signal, request_stop);
+    if (!stop_requested && !host().is_present) std::signal(signal, stop_once);
   return stop_requested;
+}
+
+void request_stop()
+{
+  stop_requested = true;
+}
+
+void forget_stop()
+{
+  stop_requested = false;
 }
 
 }  // namespace tribound::app

@@ -78,7 +78,7 @@ void write_mesh(const MeshRequest& request)
   const mesh::Survey found = mesh::survey(simplicial);
   io::write_msh(request.output, imported);
   if (request.quiet) return;
-  for (const std::string& note : notes) fmt::print(stderr, "tribound: note: {}\n", note);
+  for (const std::string& text : notes) note(text);
   print(survey_text(imported, found) + line("written", request.output));
 }
 

@@ -82,14 +82,51 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
                                               std::move(whole));
 }
 
+/// One observer after the other; the second may be empty.
+adapt::StepObserver both(const Progress& first, const adapt::StepObserver& second)
+{
+  if (!second) return first;
+  return [first, second](const adapt::CertifiedStep& step)
+  {
+    first(step);
+    second(step);
+  };
+}
+
+/// The strategy of the case, with the marking and the stopping rule of the hooks.
+template <int dim>
+adapt::Strategy<dim> make_strategy(const case_file::Config& config, const std::atomic<bool>& stop,
+                                   const RunHooks& all_hooks)
+{
+  const LoopHooks<dim>& hooks = all_hooks.of<dim>();
+  const auto kept = [](const adapt::LevelView<dim>& view)
+  { return std::make_shared<const KeptLevel<dim>>(view); };
+  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
+  if (hooks.mark)
+    strategy.mark = [&hooks, kept](const adapt::LevelView<dim>& view)
+    {
+      std::vector<Index> marked = view.discrete.mesh.ranks().together([&] { return hooks.mark(kept(view)); });
+      return marked;
+    };
+  if (hooks.stop)
+    strategy.stop = [&hooks, kept, of_case = std::move(strategy.stop)](const adapt::LevelView<dim>& view)
+    {
+      std::string why = of_case(view);
+      if (!why.empty()) return why;
+      why = view.discrete.mesh.ranks().together([&] { return hooks.stop(kept(view)); });
+      return why;
+    };
+  return strategy;
+}
+
 /// Refines the mesh level by level.
 template <int dim>
 certify::Verdict go_through_levels(const case_file::Config& config, adapt::Levels<dim>& levels,
                                    const std::atomic<bool>& stop, const Progress& progress,
-                                   RunReport<dim>& report)
+                                   const RunHooks& hooks, RunReport<dim>& report)
 {
-  adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
-  strategy.observer.step = progress;
+  adapt::Strategy<dim> strategy = make_strategy<dim>(config, stop, hooks);
+  strategy.observer.step = both(progress, hooks.step);
   strategy.observer.level = [&](const adapt::LevelView<dim>& view)
   {
     report.add(view);
@@ -138,7 +175,7 @@ void check_history(const case_file::Config& config, const problem::Problem<dim>&
 /// Follows the load steps on meshes that become fine enough for all of them.
 template <int dim>
 certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<adapt::LoadPath<dim>> path,
-                               const std::atomic<bool>& stop, const Progress& progress,
+                               const std::atomic<bool>& stop, const Progress& progress, const RunHooks& hooks,
                                std::shared_ptr<const adapt::Grid<dim>> grid, const Restart* restart,
                                RunReport<dim>& report)
 {
@@ -147,8 +184,8 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
     from = io::from_checkpoint<dim>(restart->facts, path->grid().space, restart->cells, restart->values,
                                     restart->points);
   const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
-  const adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
-  const adapt::ReplayObserver<dim> observer = report.path_observer(progress);
+  const adapt::Strategy<dim> strategy = make_strategy<dim>(config, stop, hooks);
+  const adapt::ReplayObserver<dim> observer = report.path_observer(both(progress, hooks.step));
   const problem::Problem<dim>& problem = path->problem();
   const adapt::PathProgram& program = config.history->program;
   certify::Verdict verdict = config.history->refine == case_file::Refine::transfer
@@ -165,16 +202,18 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
 
 template <int dim>
 ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
-             std::shared_ptr<const mesh::Mesh<dim>> whole, const Restart* restart)
+             const RunHooks& hooks, std::shared_ptr<const mesh::Mesh<dim>> whole, const Restart* restart)
 {
   const Clock::time_point begin = Clock::now();
-  const problem::Problem<dim> problem(case_file::resolve(config, mesh));
+  const auto owned_problem = std::make_shared<const problem::Problem<dim>>(case_file::resolve(config, mesh));
+  const problem::Problem<dim>& problem = *owned_problem;
   const std::atomic<bool>& stop = stop_on_signals();
   const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
   const auto report_from = [&](const adapt::Discretisation<dim>& first, const auto& work)
   {
     RunReport<dim> report(config, problem, first, slides, begin,
                           progress.quiet() ? Printed::verdict : Printed::everything, restart);
+    report.watch(owned_problem, hooks.of<dim>().level);
     try
     {
       return report.close(work(report));
@@ -201,7 +240,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
     return report_from(first,
                        [&](RunReport<dim>& report)
                        {
-                         return go_along_path<dim>(config, std::move(path), stop, progress,
+                         return go_along_path<dim>(config, std::move(path), stop, progress, hooks,
                                                    restart ? first.grid : nullptr, restart, report);
                        });
   }
@@ -209,12 +248,12 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
       first_level<dim>(config, problem, std::move(mesh), restart, stop, std::move(whole));
   levels->ask_for(config.adapt.bars, std::move(quantities));
   return report_from(levels->discrete(), [&](RunReport<dim>& report)
-                     { return go_through_levels<dim>(config, *levels, stop, progress, report); });
+                     { return go_through_levels<dim>(config, *levels, stop, progress, hooks, report); });
 }
 
-template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&,
+template ExitCode run(const case_file::Config&, mesh::Mesh<2>, const Progress&, const RunHooks&,
                       std::shared_ptr<const mesh::Mesh<2>>, const Restart*);
-template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&,
+template ExitCode run(const case_file::Config&, mesh::Mesh<3>, const Progress&, const RunHooks&,
                       std::shared_ptr<const mesh::Mesh<3>>, const Restart*);
 namespace
 {

@@ -14,6 +14,7 @@
 #include "app/command/with_case.h"
 #include "app/console/console.h"
 #include "app/console/text.h"
+#include "app/host.h"
 #include "app/shared_file.h"
 #include "tribound/algebra/blas.h"
 #include "tribound/algebra/petsc.h"
@@ -92,14 +93,15 @@ case_file::Config restarted_config(const CaseRequest& request, const Checkpoint&
 
 /// The work of one process that neither distributes its mesh nor continues a run.
 template <int dim>
-ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress)
+ExitCode run_alone(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progress& progress,
+                   const RunHooks& hooks)
 {
   const algebra::Environment environment;  // after the input, so that bad input fails at once
   if (Ranks::world().size() > 1)
     throw InputError(
         {}, fmt::format("{} processes were started by a launcher that is not known", Ranks::world().size()),
         "start them by mpirun");
-  return run(config, std::move(mesh), progress);
+  return run(config, std::move(mesh), progress, hooks);
 }
 
 /// Boxes, of which every rank makes its own cells; where formulas make groups, they are shared out as files
@@ -113,7 +115,7 @@ bool is_made_in_parts(const case_file::Config& config)
 template <int dim>
 ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
                         std::optional<mesh::AnyMesh> whole, const std::optional<Checkpoint>& checkpoint,
-                        const Progress& progress)
+                        const Progress& progress, const RunHooks& hooks)
 {
   using Whole = mesh::Mesh<dim>;
   std::shared_ptr<const Whole> first;
@@ -122,7 +124,7 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
   {
     Whole part = is_made_in_parts(config) ? mesh::share_out<dim>(ranks, config.mesh, first.get())
                                           : mesh::share_out<dim>(ranks, first.get());
-    return run(config, std::move(part), progress, std::move(first));
+    return run(config, std::move(part), progress, hooks, std::move(first));
   }
   const io::CheckpointFacts& facts = checkpoint->facts;
   ranks.on_first(
@@ -146,20 +148,17 @@ ExitCode run_shared_out(const Ranks& ranks, const case_file::Config& config,
                         std::move(read.points),
                         ranks.on_first([&] { return is_of_unfinished_pass(checkpoint->file); }),
                         checkpoint->file};
-  return run(config, std::move(balanced.mesh), progress, std::move(first), &restart);
+  return run(config, std::move(balanced.mesh), progress, hooks, std::move(first), &restart);
 }
 
-ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::string& place)
+ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::string& place,
+                const RunHooks& hooks)
 {
   constexpr std::int64_t most_to_look_at = 100'000;
   const Progress progress(request.quiet || !ranks.is_first());
   const std::optional<Checkpoint> checkpoint = read_checkpoint(place, ranks);
   const case_file::Config config = ranks.together(
-      [&]
-      {
-        return checkpoint ? restarted_config(request, *checkpoint)
-                          : case_file::read_config(request.case_file, request.overrides);
-      });
+      [&] { return checkpoint ? restarted_config(request, *checkpoint) : read_config(request); });
   const bool is_alone = ranks.size() == 1 && !checkpoint;
   std::optional<mesh::AnyMesh> whole;
   const bool is_plane = ranks.on_first(
@@ -173,9 +172,10 @@ ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::strin
         return std::holds_alternative<mesh::Mesh<2>>(*whole);
       });
   if (is_alone)
-    return std::visit([&](auto& mesh) { return run_alone(config, std::move(mesh), progress); }, *whole);
+    return std::visit([&](auto& mesh) { return run_alone(config, std::move(mesh), progress, hooks); },
+                      *whole);
   const auto run_in = is_plane ? run_shared_out<2> : run_shared_out<3>;
-  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, progress);
+  return run_in(ranks, config, std::exchange(whole, {}), checkpoint, progress, hooks);
 }
 
 /// One thread for each of several processes, unless the environment sets the number.
@@ -224,14 +224,14 @@ int report(ExitCode code, const std::string& message)
   return static_cast<int>(code);
 }
 
-ExitCode run(const CaseRequest& request, const std::string& restart)
+ExitCode run(const CaseRequest& request, const std::string& restart, const RunHooks& hooks)
 {
   if (request.case_file.empty() == restart.empty())
     throw InputError({}, "tribound run takes either a case file or --restart with a directory",
                      "tribound run case.toml, or tribound run --restart out/case");
-  if (n_processes() == 1 && restart.empty()) return run_on(Ranks(), request, restart);
+  if (n_processes() == 1 && restart.empty()) return run_on(Ranks(), request, restart, hooks);
   const algebra::Environment environment;
-  if (n_processes() == 1) return run_on(Ranks(), request, restart);
+  if (n_processes() == 1) return run_on(Ranks(), request, restart, hooks);
   limit_threads();
   const Ranks ranks = Ranks::world();
   try
@@ -240,7 +240,7 @@ ExitCode run(const CaseRequest& request, const std::string& restart)
       throw InputError(
           {}, fmt::format("started as {} processes, of which MPI connects {}", n_processes(), ranks.size()),
           "start it by the mpirun of the MPI library it is built with (tribound info), or as one process");
-    return run_on(ranks, request, restart);
+    return run_on(ranks, request, restart, hooks);
   }
   catch (...)
   {
@@ -250,6 +250,7 @@ ExitCode run(const CaseRequest& request, const std::string& restart)
       report(code, fmt::format("process {}: {}", ranks.rank(), message));
       Ranks::end_all(static_cast<int>(code));
     }
+    if (host().is_present) throw;
     if (ranks.is_first()) report(code, message);
     return code;
   }

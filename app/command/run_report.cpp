@@ -109,6 +109,22 @@ void RunReport<dim>::count_time(Clock::time_point& begin)
 }
 
 template <int dim>
+void RunReport<dim>::watch(
+    std::shared_ptr<const problem::Problem<dim>> problem,
+    const std::function<void(const std::shared_ptr<const KeptLevel<dim>>&, const io::LevelRecord&)>& watcher)
+{
+  if (!watcher) return;
+  watcher_ = [this, problem = std::move(problem), watcher]
+  {
+    const io::LevelRecord& record = record_.levels.back();
+    if (!in_work_.last || in_work_.last->number != record.level) return;
+    const auto owner =
+        std::make_shared<std::pair<decltype(problem), decltype(in_work_.last)>>(problem, in_work_.last);
+    ranks_.together([&] { watcher({owner, in_work_.last.get()}, record); });
+  };
+}
+
+template <int dim>
 void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadStep<dim>* step)
 {
   Clock::time_point begin = Clock::now();
@@ -155,6 +171,7 @@ void RunReport<dim>::add(const adapt::LevelView<dim>& view, const adapt::LoadSte
   if (is_path()) ranks_.on_first([&] { io::make_series_directory(fields_directory()); });
   ranks_.together([&] { start_writing(); });
   count_time(begin);
+  if (watcher_) watcher_();
 }
 
 template <int dim>

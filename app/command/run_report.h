@@ -4,6 +4,7 @@
 /// The output of a run, level by level or load step by load step.
 
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +57,11 @@ class RunReport
             const adapt::Discretisation<dim>& first, std::vector<bool> slides, Clock::time_point begin,
             Printed printed = Printed::everything, const Restart* restart = nullptr);
 
+  /// From now on add() calls `watcher`, unless it is empty, with every level that has a bound, and with every
+  /// load step. What is passed keeps the problem, to which the level refers.
+  void watch(std::shared_ptr<const problem::Problem<dim>> problem,
+             const std::function<void(const std::shared_ptr<const KeptLevel<dim>>&, const io::LevelRecord&)>&
+                 watcher);
   /// To be called after every level, and once more for the last one if Newton's method has converged on it
   /// later; also after every load `step`, of which `view` is then. Writes tables and a certificate that is
   /// valid should the program be killed, at most a second behind; fields where requested for all levels, and
@@ -171,7 +177,8 @@ class RunReport
   int factored_before_ = 0;            ///< matrices factored before it
   double writing_ = 0;                 ///< wall time of writing in the background; s
   double writing_cpu_ = 0;
-  Background background_;  ///< the last member, so that it is destroyed before the data of its jobs
+  std::function<void()> watcher_;  ///< of the last level
+  Background background_;          ///< the last member, so that it is destroyed before the data of its jobs
 };
 
 }  // namespace tribound::app

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/console/text.h"
+#include "app/host.h"
 
 namespace tribound::app
 {
@@ -51,6 +52,25 @@ std::string method_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 }
 
 }  // namespace
+
+Host& host()
+{
+  static Host of_process;
+  return of_process;
+}
+
+void print(std::string_view text)
+{
+  if (host().print) return host().print(text);
+  (void)std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+void note(std::string_view text)
+{
+  if (host().note) return host().note(text);
+  fmt::print(stderr, "tribound: note: {}\n", text);
+}
 
 std::string paragraph(std::string_view caption, std::string_view text)
 {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,11 +42,10 @@ constexpr std::size_t caption_width = 14;
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-/// Writes to stdout at once. If the reader is gone, such as `head`, this neither ends the program nor throws.
-inline void print(std::string_view text)
-{
-  (void)std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
-}
+/// Writes to stdout at once, or to the host. If the reader is gone, such as `head`, this neither ends the
+/// program nor throws.
+void print(std::string_view text);
+/// Writes what a reader has left out to stderr, or to the host.
+void note(std::string_view text);
 
 }  // namespace tribound::app

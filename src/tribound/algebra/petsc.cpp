@@ -208,7 +208,7 @@ bool start_mpi(bool alone, const std::filesystem::path& directory)
 
 }  // namespace
 
-Environment::Environment()
+Libraries::Libraries()
 {
   PetscBool has_petsc = PETSC_FALSE;
   check(PetscInitialized(&has_petsc), "starting");
@@ -229,6 +229,18 @@ Environment::Environment()
     check(PetscInitializeNoArguments(), "starting");
     started_petsc_ = true;
   }
+}
+
+Libraries::~Libraries()
+{
+  if (started_petsc_) PetscFinalize();
+  if (started_mpi_) MPI_Finalize();
+  std::error_code none;
+  if (!session_directory_.empty()) std::filesystem::remove_all(session_directory_, none);
+}
+
+Environment::Environment()
+{
   PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
   MPI_Comm_dup(MPI_COMM_SELF, &detail::own_communicator);
   MPI_Comm_dup(MPI_COMM_WORLD, &detail::common_communicator);
@@ -239,10 +251,6 @@ Environment::~Environment()
   MPI_Comm_free(&detail::common_communicator);
   MPI_Comm_free(&detail::own_communicator);
   PetscPopErrorHandler();
-  if (started_petsc_) PetscFinalize();
-  if (started_mpi_) MPI_Finalize();
-  std::error_code none;
-  if (!session_directory_.empty()) std::filesystem::remove_all(session_directory_, none);
 }
 
 AlgebraVersions algebra_versions()

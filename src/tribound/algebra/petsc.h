@@ -20,10 +20,26 @@ struct _p_Mat;
 namespace tribound::algebra
 {
 
-/// MPI (with threads: PT-Scotch deadlocks otherwise), PETSc and a communicator for the matrices. Whatever the
-/// program that uses the library has started already is used as it is and left running; the rest ends when
-/// this is destroyed. One per process, alive as long as matrices and solvers are. Throws SolveError if MPI or
-/// PETSc does not start.
+/// MPI (with threads: PT-Scotch deadlocks otherwise) and PETSc. Whatever the program that uses the library
+/// has started already is used as it is and left running; the rest ends when this is destroyed. Throws
+/// SolveError if MPI or PETSc does not start.
+class Libraries
+{
+ public:
+  Libraries();
+  ~Libraries();
+  Libraries(const Libraries&) = delete;
+  Libraries& operator=(const Libraries&) = delete;
+
+ private:
+  bool started_mpi_ = false;
+  bool started_petsc_ = false;
+  std::filesystem::path session_directory_;  ///< of Open MPI; empty: not ours
+};
+
+/// The libraries, with communicators for the matrices and errors of PETSc as exceptions. One at a time, alive
+/// as long as matrices and solvers are. A program that makes several, one after the other, keeps its own
+/// Libraries: MPI does not start twice.
 class Environment
 {
  public:
@@ -33,9 +49,7 @@ class Environment
   Environment& operator=(const Environment&) = delete;
 
  private:
-  bool started_mpi_ = false;
-  bool started_petsc_ = false;
-  std::filesystem::path session_directory_;  ///< of Open MPI; empty: not ours
+  Libraries libraries_;
 };
 
 /// Names and versions of the libraries behind the linear algebra.

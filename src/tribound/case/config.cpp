@@ -199,6 +199,15 @@ Config read_document(const Node& document, std::string file)
   return config;
 }
 
+bool has_function(const Node& node)
+{
+  if (const auto* table = std::get_if<Node::Table>(&node.value))
+    return std::ranges::any_of(*table, [](const Entry& entry) { return has_function(entry.node); });
+  if (const auto* array = std::get_if<Node::Array>(&node.value))
+    return std::ranges::any_of(*array, has_function);
+  return std::holds_alternative<problem::FieldFunction>(node.value);
+}
+
 }  // namespace
 
 const Table& case_table()
@@ -268,16 +277,25 @@ std::string friction_name(const Config& config)
   return text;
 }
 
-Config parse_config(std::string_view text, std::string name, std::span<const std::string> overrides)
+Config make_config(Node document, std::string name, std::span<const std::string> overrides)
 {
-  Node document = parse_toml(text, name);
   for (const std::string& assignment : overrides)
     apply_override(document, parameter_assignment(document, assignment));
   // The document itself has no position.
   document.where.line = document.where.column = 0;
   Config config = read_document(with_values(document, read_parameters(document)), std::move(name));
+  if (config.output.checkpoints != Checkpoints::none && has_function(document))
+    throw InputError({.file = config.file, .key = "output.checkpoint"},
+                     "goes with data that a file can hold, but the case has functions of a program",
+                     "formulas in their place, or no checkpoints");
   config.effective = effective_case(std::move(document), config, overrides);
   return config;
+}
+
+Config parse_config(std::string_view text, std::string name, std::span<const std::string> overrides)
+{
+  Node document = parse_toml(text, name);
+  return make_config(std::move(document), std::move(name), overrides);
 }
 
 Config read_config(const std::filesystem::path& file, std::span<const std::string> overrides)

@@ -17,6 +17,7 @@
 #include "tribound/base/error.h"
 #include "tribound/case/geometry.h"
 #include "tribound/case/history.h"
+#include "tribound/case/node.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/mesh/formula_groups.h"
 #include "tribound/mesh/seams.h"
@@ -205,6 +206,12 @@ struct Config
 /// Reads a case file; each override is "dotted.key=TOML value" (a bare word is taken as a string).
 /// Throws InputError.
 [[nodiscard]] Config read_config(const std::filesystem::path& file,
+                                 std::span<const std::string> overrides = {});
+
+/// The same from a document that a program has made; paths are relative to the directory of `name`, which
+/// messages give for the file. Functions cannot stand in the effective case, so checkpoints, which are
+/// restarted from that, are refused.
+[[nodiscard]] Config make_config(Node document, std::string name = "case",
                                  std::span<const std::string> overrides = {});
 
 /// The same from text; messages give `name` for the file.

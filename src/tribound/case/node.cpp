@@ -28,6 +28,7 @@ struct Describe
   std::string operator()(double number) const { return fmt::format("the number {}", number); }
   std::string operator()(bool truth) const { return truth ? "true" : "false"; }
   std::string operator()(Node::DateOrTime) const { return "a date or time"; }
+  std::string operator()(const problem::FieldFunction&) const { return "a function"; }
 };
 
 }  // namespace

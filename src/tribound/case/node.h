@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file node.h
-/// A TOML document as a tree of values with their positions; independent of the TOML library.
+/// A case as a tree of values with their positions: a TOML document, independent of the TOML library, or made
+/// by a program, which may put functions in the place of formulas.
 
 #include <cstdint>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "tribound/base/error.h"
+#include "tribound/problem/field.h"
 
 namespace tribound::case_file
 {
@@ -27,7 +29,8 @@ struct Node
   {
   };
 
-  std::variant<Table, Array, std::string, std::int64_t, double, bool, DateOrTime> value;
+  std::variant<Table, Array, std::string, std::int64_t, double, bool, DateOrTime, problem::FieldFunction>
+      value;
   Where where;
 
   [[nodiscard]] bool is_table() const { return std::holds_alternative<Table>(value); }
@@ -55,7 +58,8 @@ struct Entry
 [[nodiscard]] Node parse_toml(std::string_view text, const std::string& file);
 
 /// The document as TOML that parse_toml() reads back to the same values: first the keys of a table, then its
-/// subtables, each with a header. Numbers have the fewest digits that read back as the same number.
+/// subtables, each with a header. Numbers have the fewest digits that read back as the same number. A
+/// function becomes a string that is no formula: such a case cannot be read back.
 [[nodiscard]] std::string to_toml(const Node& document);
 
 /// A value as written after "key = ".

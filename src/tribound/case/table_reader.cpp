@@ -153,6 +153,8 @@ double to_number(const Node& node)
 problem::Field to_field(const Node& node)
 {
   if (const auto* text = std::get_if<std::string>(&node.value)) return problem::Field(*text, node.where);
+  if (const auto* function = std::get_if<problem::FieldFunction>(&node.value))
+    return problem::Field(*function, node.where);
   if (!std::holds_alternative<std::int64_t>(node.value) && !std::holds_alternative<double>(node.value))
     fail_type(node, "a number or a formula", "such as 0.3 or \"0.3*max(0, 1-x)\"");
   const double number = to_number(node);

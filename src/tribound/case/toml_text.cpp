@@ -56,6 +56,7 @@ struct InlineText
     assert(false);  // no key of a case accepts one
     return {};
   }
+  std::string operator()(const problem::FieldFunction&) const { return quoted("a function of a program"); }
 };
 
 /// Whether it is written as one [[name]] per item.

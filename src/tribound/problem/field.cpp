@@ -44,6 +44,7 @@ Field::Field(std::string text, Where where, std::string name, double t)
 
 Field Field::at(double t) const
 {
+  if (function_ && function_->at) return Field(function_->at(t), where_);
   return in_time_ ? Field(*in_time_, where_, name_, t) : *this;
 }
 

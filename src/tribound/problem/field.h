@@ -35,6 +35,8 @@ struct FieldFunction
   /// that this is not covered.
   std::function<void(std::span<const double> vertices, int dim, std::span<Enclosure> coefficients)> enclose =
       {};
+  /// The function at the load factor t, if it varies with t; it is then given for t = 1.
+  std::function<FieldFunction(double t)> at = {};
 
   static constexpr int not_polynomial = 1'000'000;
 };
@@ -62,8 +64,8 @@ class Field
 
   /// The same datum at the load factor t. Throws InputError if it is then a constant that is not finite.
   [[nodiscard]] Field at(double t) const;
-  /// Whether it is a formula that names t.
-  [[nodiscard]] bool uses_time() const { return in_time_ != nullptr; }
+  /// Whether it varies with t: a formula that names t, or a function with FieldFunction::at.
+  [[nodiscard]] bool uses_time() const { return in_time_ != nullptr || (function_ && function_->at); }
 
   /// The value at `x` (z = 0 in 2D). Throws InputError naming the key and the point if it is not finite.
   template <int dim>

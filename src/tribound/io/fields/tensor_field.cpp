@@ -141,12 +141,33 @@ TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
           }};
 }
 
+template <int dim>
+void symmetric_at_nodes(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                        const TensorField<dim>& field, Index cell, std::span<std::array<double, 6>> values)
+{
+  const int region = space.mesh().region(cell);
+  const double ratio = out_of_plane_ratio(problem.material(region));
+  const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
+  const std::vector<Point<dim>> nodes = space.basis().node_points();
+  std::vector<Tensor<dim>> tensors(nodes.size());
+  field.at_nodes(cell, tensors);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    values[i] = symmetric_part<dim>(tensors[i], ratio);
+    values[i][2] += out_of_plane_rest(problem, region, map(nodes[i]));
+  }
+}
+
 template bool has_out_of_plane_rest(const problem::Region<2>&);
 template bool has_out_of_plane_rest(const problem::Region<3>&);
 template double out_of_plane_rest(const problem::Problem<2>&, int, const Point<2>&);
 template double out_of_plane_rest(const problem::Problem<3>&, int, const Point<3>&);
 template std::array<double, 6> symmetric_part(const Tensor<2>&, double);
 template std::array<double, 6> symmetric_part(const Tensor<3>&, double);
+template void symmetric_at_nodes(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                 const TensorField<2>&, Index, std::span<std::array<double, 6>>);
+template void symmetric_at_nodes(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                 const TensorField<3>&, Index, std::span<std::array<double, 6>>);
 template TensorField<2> stress_field(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                      std::span<const double>);
 template TensorField<3> stress_field(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,

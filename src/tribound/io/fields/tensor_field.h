@@ -59,6 +59,11 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio);
 
+/// The symmetric parts of a stress at the nodes of a cell, with what the initial stress adds to zz in 2D.
+template <int dim>
+void symmetric_at_nodes(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                        const TensorField<dim>& field, Index cell, std::span<std::array<double, 6>> values);
+
 /// Von Mises stress (3/2 dev sigma : dev sigma)^{1/2} of the symmetric tensor (xx, yy, zz, xy, yz, xz).
 [[nodiscard]] double von_mises(const std::array<double, 6>& sigma);
 

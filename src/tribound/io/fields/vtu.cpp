@@ -32,18 +32,11 @@ struct Level
   /// Calls use(sigma) for the nodes of all cells in turn, sigma in the order of symmetric_part().
   void for_each_tensor(const TensorField<dim>& field, const auto& use) const
   {
-    std::vector<Tensor<dim>> values(order.size());
+    std::vector<std::array<double, 6>> values(order.size());
     for (Index c = 0; c < n_cells(); ++c)
     {
-      field.at_nodes(c, values);
-      const double ratio = out_of_plane_ratio(problem.material(space.mesh().region(c)));
-      const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), c);
-      for (const int i : order)
-      {
-        std::array<double, 6> sigma = symmetric_part<dim>(values[i], ratio);
-        sigma[2] += out_of_plane_rest(problem, space.mesh().region(c), map(space.basis().node_points()[i]));
-        use(sigma);
-      }
+      symmetric_at_nodes<dim>(problem, space, field, c, values);
+      for (const int i : order) use(values[i]);
     }
   }
 
