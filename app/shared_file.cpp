@@ -1,5 +1,7 @@
 #include "app/shared_file.h"
 
+#include "app/host.h"
+
 #include <system_error>
 
 namespace tribound::app
@@ -12,7 +14,8 @@ namespace
 std::filesystem::path find_installed(const char* relative, const char* absolute, const std::string& name)
 {
   std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path program =
+      host().program.empty() ? std::filesystem::read_symlink("/proc/self/exe", error) : host().program;
   for (const std::filesystem::path& folder :
        {program.parent_path() / ".." / relative, std::filesystem::path(absolute)})
   {

@@ -19,22 +19,6 @@ namespace
 /// The maximal number of cells of several ranks gathered on one.
 constexpr std::int64_t most_in_one = 1'000'000;
 
-/// eta_tot and the components cell by cell, for the VTU file.
-std::vector<std::pair<std::string, std::vector<double>>> cell_components(const certify::Estimate& estimate,
-                                                                         const certify::RunKind& kind)
-{
-  std::vector<std::pair<std::string, std::vector<double>>> columns;
-  const auto add = [&](std::string name, auto value)
-  {
-    std::vector<double>& column = columns.emplace_back(std::move(name), std::vector<double>{}).second;
-    std::ranges::transform(estimate.cells, std::back_inserter(column), value);
-  };
-  add("eta_tot", &certify::BoundComponents::total_sharp);
-  for (const certify::Component& c : certify::components_of_run(kind))
-    if (c.is_of_cells()) add(std::string("eta_") + c.name, c.value);
-  return columns;
-}
-
 /// The boundaries of the mesh that the case does not mention; they are free.
 std::vector<std::string> free_sides(const case_file::Config& config,
                                     std::span<const std::string> boundary_names)
@@ -66,12 +50,27 @@ std::shared_ptr<const KeptLevel<dim>> KeptLevel<dim>::gathered(const adapt::Leve
 }
 
 template <int dim>
+std::vector<std::pair<std::string, std::vector<double>>> KeptLevel<dim>::cell_components() const
+{
+  std::vector<std::pair<std::string, std::vector<double>>> columns;
+  const auto add = [&](std::string name, auto value)
+  {
+    std::vector<double>& column = columns.emplace_back(std::move(name), std::vector<double>{}).second;
+    std::ranges::transform(level.estimate.cells, std::back_inserter(column), value);
+  };
+  const certify::RunKind kind{.regularised = level.delta_updates.has_value(),
+                              .paired = !discrete->form.problem().pairs().empty()};
+  add("eta_tot", &certify::BoundComponents::total_sharp);
+  for (const certify::Component& c : certify::components_of_run(kind))
+    if (c.is_of_cells()) add(std::string("eta_") + c.name, c.value);
+  return columns;
+}
+
+template <int dim>
 void KeptLevel<dim>::write_fields(const std::filesystem::path& directory,
                                   std::span<const io::CellField> further) const
 {
-  const auto components = cell_components(
-      level.estimate,
-      {.regularised = level.delta_updates.has_value(), .paired = !discrete->form.problem().pairs().empty()});
+  const auto components = cell_components();
   std::vector<io::CellField> fields;
   fields.reserve(components.size() + further.size());
   for (const auto& [name, values] : components) fields.push_back({name, values});

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tribound/adapt/excerpt.h"
 #include "tribound/adapt/loop.h"
@@ -52,6 +53,8 @@ struct KeptLevel
   /// Whether the page can show it.
   [[nodiscard]] bool fits_page() const { return dim == 3 || is_merged || is_complete(); }
 
+  /// eta_tot, and eta_NAME for the components of the bound, cell by cell.
+  [[nodiscard]] std::vector<std::pair<std::string, std::vector<double>>> cell_components() const;
   /// Writes level_NNN.vtu or step_NNN.vtu, or the files of several ranks: the fields of a level with the
   /// bound of every cell, and `further` numbers per cell. Throws WriteError when the file cannot be written.
   void write_fields(const std::filesystem::path& directory,

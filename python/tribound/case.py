@@ -1,0 +1,138 @@
+"""Cases: what a case file says, from a dictionary, a text or a file, with functions of Python as data."""
+
+import inspect
+import os
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tribound import _tribound
+
+Datum = Callable[..., ArrayLike]
+
+
+class Function:
+    """A function of Python as a datum: f(x), or f(x, t) with the load factor t of a history.
+
+    x has the shape (d, n): x[0] are the first coordinates of n points. f returns n numbers, or one for all of
+    them. For a polynomial, `degree` tells its total degree; what f does between the points at which it is
+    evaluated is otherwise unknown, and the certificate says so.
+    """
+
+    def __init__(self, f: Datum, degree: int | None = None) -> None:
+        if not callable(f):
+            raise TypeError(f"{f!r} is no function")
+        self.call = f
+        self.degree = degree
+        self.uses_time = _takes_time(f)
+
+    def component(self, index: int, n: int, key: str) -> "Function":
+        """A component of a function that returns an array of shape (n, number of points)."""
+
+        def call(x: NDArray[np.float64], *t: float) -> NDArray[np.float64]:
+            values = np.asarray(self.call(x, *t))
+            if values.shape not in ((n, x.shape[1]), (n, 1), (n,)):
+                raise ValueError(
+                    f"{key}: the function returns an array of shape {values.shape} for {x.shape[1]} points; "
+                    f"right would be ({n}, {x.shape[1]})"
+                )
+            return np.broadcast_to(values[index], x.shape[1])
+
+        one = Function(call, self.degree)
+        one.uses_time = self.uses_time
+        return one
+
+
+def _takes_time(f: Datum) -> bool:
+    """Whether f must be called with a second argument."""
+    try:
+        parameters = inspect.signature(f).parameters.values()
+    except (TypeError, ValueError):  # of some functions in C nothing is known
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(p.kind in positional and p.default is inspect.Parameter.empty for p in parameters) > 1
+
+
+class Case:
+    """A case: a dictionary with the tables and keys of a case file, or the TOML text of one.
+
+    `set` overrides keys, as `--set` does: {"degree": 3, "boundary.top.pressure": "2*x"}. The names are those of
+    docs/case-format.md; a Function, or any function f(x), may stand wherever a formula may, except for
+    directions and surfaces. Relative paths start from the current directory, or from that of the file.
+    """
+
+    def __init__(
+        self, source: Mapping[str, Any] | str, *, set: Mapping[str, Any] | None = None, name: str = "case"
+    ) -> None:
+        self.source = source
+        self.name = name
+        self.overrides = dict(set or {})
+
+    @classmethod
+    def read(cls, file: str | os.PathLike[str], *, set: Mapping[str, Any] | None = None) -> "Case":
+        """The case of a file."""
+        return cls(_tribound.read_text(os.fspath(file)), set=set, name=os.fspath(file))
+
+    def but(self, **set: Any) -> "Case":
+        """The same case with other values; dotted names as `case.but(**{"adapt.tolerance": 0.1})`."""
+        return Case(self.source, set={**self.overrides, **set}, name=self.name)
+
+    def has_functions(self) -> bool:
+        """Whether there are functions of Python in it."""
+        return _has_functions(self.source)
+
+    def document(self, dimension: Callable[[], int]) -> _tribound.Document:
+        """What the program reads. `dimension` is asked where a function gives all components of a vector."""
+        if isinstance(self.source, str):
+            return _tribound.Document.parse(self.source, self.name)
+        return _tribound.Document(_prepared(self.source, "", dimension), self.name)
+
+    def assignments(self) -> list[str]:
+        """The overrides, as `--set` has them."""
+        return [f"{key}={_tribound.to_toml(value)}" for key, value in self.overrides.items()]
+
+    def __repr__(self) -> str:
+        keys = "TOML" if isinstance(self.source, str) else ", ".join(self.source)
+        return f"tribound.Case({self.name}: {keys})"
+
+
+def _is_function(value: Any) -> bool:
+    return isinstance(value, Function) or callable(value)
+
+
+def _has_functions(value: Any) -> bool:
+    if isinstance(value, Mapping):
+        return any(map(_has_functions, value.values()))
+    if isinstance(value, list | tuple):
+        return any(map(_has_functions, value))
+    return _is_function(value)
+
+
+_VECTOR_KEYS = _tribound.vector_keys()
+
+
+def _prepared(value: Any, key: str, dimension: Callable[[], int]) -> Any:
+    """The value with functions as Function, and those for vectors taken apart."""
+    if isinstance(value, Mapping):
+        return {
+            name: _prepared(item, f"{key}.{name}" if key else str(name), dimension)
+            for name, item in value.items()
+        }
+    if isinstance(value, list | tuple):
+        return [item if not _is_function(item) else _function(item) for item in value] if not any(
+            isinstance(item, Mapping) for item in value
+        ) else [_prepared(item, f"{key}[{i}]", dimension) for i, item in enumerate(value)]
+    if not _is_function(value):
+        return value
+    name = key.rsplit(".", 1)[-1]
+    if name not in _VECTOR_KEYS:
+        return _function(value)
+    d = dimension()
+    n = d * (d + 1) // 2 if name == "initial_stress" else d
+    return [_function(value).component(i, n, key) for i in range(n)]
+
+
+def _function(value: Any) -> Function:
+    return value if isinstance(value, Function) else Function(value)

@@ -1,0 +1,151 @@
+"""Commands of the program in a thread of their own, so that Ctrl-C and callbacks reach the caller at once."""
+
+import atexit
+import queue
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from tribound import _tribound
+
+T = TypeVar("T")
+
+# How long Ctrl-C waits for a run to end by itself, s.
+_PATIENCE = 0.3
+
+
+class Abandoned(BaseException):
+    """Ends a run in the background that nobody waits for any more."""
+
+
+@dataclass
+class _Message:
+    """What the thread of a run asks its caller for: a call, or that a value is yielded."""
+
+    function: Callable[..., Any] | None
+    arguments: tuple[Any, ...] = ()
+
+
+class Work(threading.Thread, Generic[T]):
+    """A command in a thread. One at a time computes in a process: MPI, PETSc and Gmsh allow no more."""
+
+    _current: "Work[Any] | None" = None
+    _lock = threading.Lock()
+
+    def __init__(self, command: "Callable[[Work[T]], T]", prints: bool) -> None:
+        super().__init__(name="tribound")
+        self.prints = prints
+        self._command = command
+        self._messages: queue.SimpleQueue[_Message | None] = queue.SimpleQueue()
+        self._replies: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
+        self._is_abandoned = False
+        self._result: list[T] = []
+        self._failure: BaseException | None = None
+
+    def run(self) -> None:
+        """The thread itself; not for callers."""
+        try:
+            self._result.append(self._command(self))
+        except BaseException as failure:  # passed on to the caller
+            self._failure = failure
+        finally:
+            del self._command
+            self._messages.put(None)
+
+    # ---- in the thread
+
+    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """function(*arguments) in the caller's thread; what it raises ends the run."""
+        return self._ask(_Message(function, arguments))
+
+    def show(self, value: Any) -> None:
+        """Has the caller yield the value."""
+        self._ask(_Message(None, (value,)))
+
+    def _ask(self, message: _Message) -> Any:
+        if self._is_abandoned:
+            raise Abandoned
+        self._messages.put(message)
+        value, failure = self._replies.get()
+        if failure is not None:
+            raise failure
+        return value
+
+    # ---- in the caller's thread
+
+    def values(self) -> Iterator[Any]:
+        """Runs the command and yields what it shows. To stop early ends the run, as the program ends by Ctrl-C."""
+        self._claim()
+        ended = False
+        try:
+            for message in iter(self._messages.get, None):
+                if message.function is None:
+                    yield message.arguments[0]
+                    self._replies.put((None, None))
+                else:
+                    self._reply(message)
+            ended = True
+        finally:
+            if not ended:
+                self._leave()
+        self.join()
+        if self._failure is not None:
+            try:
+                raise self._failure
+            finally:
+                self._failure = None  # its traceback would keep this alive
+
+    def result(self) -> T:
+        """Runs the command and returns its result."""
+        for _ in self.values():
+            pass
+        return self._result.pop()
+
+    def _reply(self, message: _Message) -> None:
+        assert message.function is not None
+        try:
+            value = message.function(*message.arguments)
+        except Exception as failure:
+            self._replies.put((None, failure))
+        else:
+            self._replies.put((value, None))
+
+    def _claim(self) -> None:
+        with Work._lock:
+            busy = Work._current
+            if busy is not None and busy.is_alive():
+                if not busy._is_abandoned:
+                    raise RuntimeError(
+                        "Tribound computes already in this process, and it can do one thing at a time: wait for it, "
+                        "or take a process of its own for each run"
+                    )
+                busy.join()
+            _tribound.start()
+            _tribound.forget_stop()
+            Work._current = self
+            self.start()
+
+    def _leave(self) -> None:
+        """Ends the run: at once for the caller; the thread ends after the step that it is in."""
+        self._is_abandoned = True
+        _tribound.request_stop()
+        self._replies.put((None, Abandoned()))
+        self.join(_PATIENCE)
+
+
+def _print(text: str) -> None:
+    work = Work._current
+    if work is not None and work.prints:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+
+
+def _note(text: str) -> None:
+    warnings.warn(f"tribound: {text}", stacklevel=2)
+
+
+_tribound.set_output(_print, _note)
+atexit.register(_tribound.finish)
