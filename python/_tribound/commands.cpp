@@ -156,7 +156,8 @@ void set_output(const py::object& print, const py::object& note)
 /// Status, reason and figures of a run by the files in its directory, as in sweep.csv.
 py::dict read_results(const std::string& directory, int exit_code)
 {
-  app::SweepRun run{.name = {}, .values = {}, .sha256 = {}, .mesh_sha256 = {}, .exit_code = exit_code};
+  app::SweepRun run{};
+  run.exit_code = exit_code;
   app::read_results(directory, run);
   py::dict results;
   results["status"] = run.status;

@@ -51,7 +51,7 @@ def sweep(
         _check(one, mesh)
     folders = [place.path / f"{number:04d}" for number in range(1, len(cases) + 1)]
     if jobs == 1:
-        codes = [_solve(one, mesh, folder) for one, folder in zip(cases, folders)]
+        codes = [solve(one, mesh, folder) for one, folder in zip(cases, folders)]
     else:
         codes = _solve_apart(cases, mesh, folders, jobs)
     rows = [_tribound.read_results(str(folder), code) for folder, code in zip(folders, codes)]
@@ -73,7 +73,8 @@ def _column(values: list[Any]) -> NDArray[Any]:
     return np.array([np.nan if value is None else value for value in values], dtype=float)
 
 
-def _solve(case: Case, mesh: Mesh | None, folder: Path) -> int:
+def solve(case: Case, mesh: Mesh | None, folder: Path) -> int:
+    """A run of the sweep; returns the exit code that the program would have."""
     try:
         status = run(case, mesh, directory=folder).status
     except SolveError:
@@ -87,8 +88,8 @@ def _solve_apart(cases: list[Case], mesh: Mesh | None, folders: list[Path], jobs
     environment["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
     running: list[subprocess.Popen[bytes]] = []
 
-    def solve(task: bytes) -> int:
-        with subprocess.Popen([sys.executable, "-m", "tribound.sweep"], stdin=subprocess.PIPE, env=environment) as child:
+    def solve_one(task: bytes) -> int:
+        with subprocess.Popen([sys.executable, "-m", "tribound.worker"], stdin=subprocess.PIPE, env=environment) as child:
             running.append(child)
             child.communicate(task)
         return child.returncode
@@ -96,7 +97,7 @@ def _solve_apart(cases: list[Case], mesh: Mesh | None, folders: list[Path], jobs
     tasks = [_dump((case, mesh, folder)) for case, folder in zip(cases, folders)]
     with ThreadPoolExecutor(jobs) as pool:
         try:
-            codes = list(pool.map(solve, tasks))
+            codes = list(pool.map(solve_one, tasks))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for child in running:
@@ -116,7 +117,3 @@ def _dump(task: tuple[Case, Mesh | None, Path]) -> bytes:
             "functions reach other processes by cloudpickle: apt install python3-cloudpickle, or jobs=1"
         ) from error
     return cloudpickle.dumps(task)  # type: ignore[no-any-return]
-
-
-if __name__ == "__main__":
-    sys.exit(_solve(*pickle.loads(sys.stdin.buffer.read())))
