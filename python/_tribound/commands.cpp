@@ -153,11 +153,12 @@ void set_output(const py::object& print, const py::object& note)
       .is_present = true, .program = app::host().program, .print = caller(print), .note = caller(note)};
 }
 
-/// Status, reason and figures of a run by the files in its directory, as in sweep.csv.
-py::dict read_results(const std::string& directory, int exit_code)
+/// Status, reason and figures of a run by the files in its directory, as in sweep.csv; `sha256`: of its case.
+py::dict read_results(const std::string& directory, int exit_code, const std::string& sha256)
 {
   app::SweepRun run{};
   run.exit_code = exit_code;
+  run.sha256 = sha256;
   app::read_results(directory, run);
   py::dict results;
   results["status"] = run.status;

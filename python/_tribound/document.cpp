@@ -115,7 +115,9 @@ case_file::Node::Table to_table(const py::dict& dictionary, const std::string& n
                        "keys are strings");
     const auto text = entry.cast<std::string>();
     const std::string inner = case_file::dotted_key(key, text);
-    table.push_back({text, {.file = name, .key = inner}, to_node(value, name, inner)});
+    // Not in the list below: GCC 12 frees its other entries twice where this throws.
+    case_file::Node node = to_node(value, name, inner);
+    table.push_back({text, node.where, std::move(node)});
   }
   return table;
 }
@@ -156,22 +158,33 @@ void collect_vectors(const case_file::Table& table, std::set<std::string>& names
 case_file::Node to_node(const py::handle& value, const std::string& name, const std::string& key)
 {
   const Where where{.file = name, .key = key};
+  case_file::Node node{{}, where};
   if (py::isinstance<py::dict>(value))
-    return {to_table(py::reinterpret_borrow<py::dict>(value), name, key), where};
-  if (py::isinstance<py::str>(value)) return {value.cast<std::string>(), where};
-  if (py::isinstance<py::bool_>(value)) return {value.cast<bool>(), where};
-  if (py::isinstance<py::float_>(value)) return {value.cast<double>(), where};
-  if (PyIndex_Check(value.ptr()) != 0 && !py::isinstance<py::array>(value))
-    return {to_integer(py::module_::import("operator").attr("index")(value), where), where};
-  if (py::isinstance<py::array>(value)) return to_node(value.attr("tolist")(), name, key);
-  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value))
-    return {to_items(value, name, key), where};
-  if (py::hasattr(value, "uses_time")) return {to_function(value, where), where};
-  if (py::hasattr(value, "__fspath__")) return {value.attr("__fspath__")().cast<std::string>(), where};
-  if (py::hasattr(value, "__float__")) return {value.attr("__float__")().cast<double>(), where};
-  throw InputError(
-      where, fmt::format("is a {}", py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>()),
-      "a number, a text, true or false, a list, a dictionary or a function");
+    node.value = to_table(py::reinterpret_borrow<py::dict>(value), name, key);
+  else if (py::isinstance<py::str>(value))
+    node.value = value.cast<std::string>();
+  else if (py::isinstance<py::bool_>(value))
+    node.value = value.cast<bool>();
+  else if (py::isinstance<py::float_>(value))
+    node.value = value.cast<double>();
+  else if (py::isinstance<py::array>(value))
+    node = to_node(value.attr("tolist")(), name, key);
+  else if (PyIndex_Check(value.ptr()) != 0)
+    node.value = to_integer(py::module_::import("operator").attr("index")(value), where);
+  else if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value))
+    node.value = to_items(value, name, key);
+  else if (py::hasattr(value, "uses_time"))
+    node.value = to_function(value, where);
+  else if (py::hasattr(value, "__fspath__"))
+    node.value = value.attr("__fspath__")().cast<std::string>();
+  else if (py::hasattr(value, "__float__"))
+    node.value = value.attr("__float__")().cast<double>();
+  else
+    throw InputError(
+        where,
+        fmt::format("is a {}", py::str(py::type::handle_of(value).attr("__name__")).cast<std::string>()),
+        "a number, a text, true or false, a list, a dictionary or a function");
+  return node;
 }
 
 void bind_documents(py::module_& module)

@@ -207,7 +207,9 @@ void bind(py::module_& module, const char* name)
 template <int dim>
 Level<dim> to_level(const std::shared_ptr<const app::KeptLevel<dim>>& kept, const io::LevelRecord& record)
 {
-  return {kept, io::level_json(record).dump()};
+  io::Json object = io::level_json(record);
+  if (record.balance) object["balance"] = io::balance_json(*record.balance);
+  return {kept, object.dump()};
 }
 
 template Level<2> to_level(const std::shared_ptr<const app::KeptLevel<2>>&, const io::LevelRecord&);

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tribound import _tribound
+from tribound.errors import InputError
 
 Datum = Callable[..., ArrayLike]
 
@@ -34,9 +35,10 @@ class Function:
         def call(x: NDArray[np.float64], *t: float) -> NDArray[np.float64]:
             values = np.asarray(self.call(x, *t))
             if values.shape not in ((n, x.shape[1]), (n, 1), (n,)):
-                raise ValueError(
-                    f"{key}: the function returns an array of shape {values.shape} for {x.shape[1]} points; "
-                    f"right would be ({n}, {x.shape[1]})"
+                raise InputError.at(
+                    key,
+                    f"the function returns an array of shape {values.shape} for {x.shape[1]} points",
+                    f"({n}, {x.shape[1]})",
                 )
             return np.broadcast_to(values[index], x.shape[1])
 

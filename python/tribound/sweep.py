@@ -1,6 +1,7 @@
 """A case with several values of some of its keys."""
 
 import itertools
+import json
 import os
 import pickle
 import subprocess
@@ -54,7 +55,7 @@ def sweep(
         codes = [solve(one, mesh, folder) for one, folder in zip(cases, folders)]
     else:
         codes = _solve_apart(cases, mesh, folders, jobs)
-    rows = [_tribound.read_results(str(folder), code) for folder, code in zip(folders, codes)]
+    rows = [_row(folder, code) for folder, code in zip(folders, codes)]
     table = {key: np.array([row[i] for row in combinations]) for i, key in enumerate(keys)}
     for name in dict.fromkeys(name for row in rows for name in row):
         table[name] = _column([row.get(name) for row in rows])
@@ -65,6 +66,12 @@ def _check(case: Case, mesh: Mesh | None) -> None:
     """Raises InputError for a case that is wrong without looking at its mesh."""
     given = Input(case, mesh, None, Place(None))
     given.document.check(given.overrides)
+
+
+def _row(folder: Path, code: int) -> dict[str, Any]:
+    file = folder / "certificate.json"
+    sha256 = json.loads(file.read_text())["case"]["sha256"] if file.exists() else ""
+    return _tribound.read_results(str(folder), code, sha256)
 
 
 def _column(values: list[Any]) -> NDArray[Any]:
