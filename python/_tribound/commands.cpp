@@ -59,7 +59,7 @@ std::vector<Index> to_cells(const py::object& returned, Index n_cells)
   return cells;
 }
 
-/// The hooks of an object with the attributes `level`, `mark`, `stop`, each a function or None.
+/// The hooks of an object with the functions `level` and `step`, and `mark` and `stop`, functions or None.
 template <int dim>
 app::LoopHooks<dim> loop_hooks(const py::object& hooks)
 {
@@ -87,7 +87,6 @@ app::LoopHooks<dim> loop_hooks(const py::object& hooks)
 
 adapt::StepObserver step_hook(const py::object& hooks)
 {
-  if (hooks.attr("step").is_none()) return {};
   return [&hooks](const adapt::CertifiedStep& step)
   {
     const py::gil_scoped_acquire lock;

@@ -181,7 +181,7 @@ void bind(py::module_& module, const char* name)
            [space](const py::object& self)
            {
              const fem::LagrangeSpace<dim>& of = space(self.cast<const L&>());
-             return view(of.cell_nodes(0).data(), {of.mesh().n_cells(), of.basis().n_nodes()}, self);
+             return view(of.cell_nodes(0).data(), {of.mesh().n_owned_cells(), of.basis().n_nodes()}, self);
            })
       .def("cell_node_indices", &cell_node_indices<dim>)
       .def("displacement",

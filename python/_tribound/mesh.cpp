@@ -58,8 +58,8 @@ template <int dim>
 py::dict mesh_arrays(const mesh::Mesh<dim>& mesh, const py::object& owner)
 {
   std::vector<int> regions;
-  regions.reserve(mesh.n_cells());
-  for (Index c = 0; c < mesh.n_cells(); ++c) regions.push_back(mesh.region(c));
+  regions.reserve(mesh.n_owned_cells());
+  for (Index c = 0; c < mesh.n_owned_cells(); ++c) regions.push_back(mesh.region(c));
   std::vector<Index> facets;
   std::vector<int> groups;
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
@@ -71,8 +71,8 @@ py::dict mesh_arrays(const mesh::Mesh<dim>& mesh, const py::object& owner)
   const auto n_facets = static_cast<py::ssize_t>(groups.size());
   py::dict arrays;
   arrays["points"] = view(mesh.vertices().front().data(), {mesh.n_vertices(), dim}, owner);
-  arrays["cells"] = view(mesh.cells().front().data(), {mesh.n_cells(), dim + 1}, owner);
-  arrays["region"] = owned(std::move(regions), {mesh.n_cells()});
+  arrays["cells"] = view(mesh.cells().front().data(), {mesh.n_owned_cells(), dim + 1}, owner);
+  arrays["region"] = owned(std::move(regions), {mesh.n_owned_cells()});
   arrays["region_names"] = std::vector<std::string>(mesh.region_names().begin(), mesh.region_names().end());
   arrays["facets"] = owned(std::move(facets), {n_facets, dim});
   arrays["facet_group"] = owned(std::move(groups), {n_facets});

@@ -11,7 +11,8 @@ namespace tribound::python
 {
 
 /// points, cells, region (number of each cell's region), region_names, facets, facet_group, boundary_names:
-/// views of a mesh that `owner` keeps.
+/// of the own
+/// cells of this rank, with views of a mesh that `owner` keeps.
 template <int dim>
 [[nodiscard]] pybind11::dict mesh_arrays(const mesh::Mesh<dim>& mesh, const pybind11::object& owner);
 

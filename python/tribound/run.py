@@ -84,7 +84,7 @@ class Hooks:
         self._shows = shows
         self._on_level = on_level
         self._keep_levels = keep_levels
-        self.step = None if on_step is None else self._step(on_step)
+        self._on_step = on_step
         self.mark = None if mark is None else self._mark(mark)
         self.stop = None if stop is None else self._stop(stop)
 
@@ -101,11 +101,11 @@ class Hooks:
         if self._shows:
             self._work.show(level)
 
-    def _step(self, on_step: Callable[[Step], Any]) -> Callable[..., None]:
-        def step(number: int, residual: float, relative: float | None, seconds: float) -> None:
-            self._work.call(on_step, Step(number, residual, relative, seconds))
-
-        return step
+    def step(self, number: int, residual: float, relative: float | None, seconds: float) -> None:
+        """Called after every step of Newton's method."""
+        self._work.go_on()
+        if self._on_step is not None:
+            self._work.call(self._on_step, Step(number, residual, relative, seconds))
 
     def _mark(self, mark: Callable[[Level], ArrayLike]) -> Callable[[Any], NDArray[np.int64]]:
         def marked(core: Any) -> NDArray[np.int64]:

@@ -65,9 +65,13 @@ class Work(threading.Thread, Generic[T]):
         """Has the caller yield the value."""
         self._ask(_Message(None, (value,)))
 
-    def _ask(self, message: _Message) -> Any:
+    def go_on(self) -> None:
+        """Ends the run where its caller has left it."""
         if self._is_abandoned:
             raise Abandoned
+
+    def _ask(self, message: _Message) -> Any:
+        self.go_on()
         self._messages.put(message)
         value, failure = self._replies.get()
         if failure is not None:
@@ -77,9 +81,8 @@ class Work(threading.Thread, Generic[T]):
     # ---- in the caller's thread
 
     def values(self) -> Iterator[Any]:
-        """Runs the command and yields what it shows. To stop early ends the run, as the program ends by Ctrl-C."""
+        """Runs the command and yields what it shows. Closed early, it ends as the program does by Ctrl-C."""
         self._claim()
-        ended = False
         try:
             for message in iter(self._messages.get, None):
                 if message.function is None:
@@ -87,10 +90,12 @@ class Work(threading.Thread, Generic[T]):
                     self._replies.put((None, None))
                 else:
                     self._reply(message)
-            ended = True
-        finally:
-            if not ended:
-                self._leave()
+        except GeneratorExit:
+            self._finish()
+            raise
+        except BaseException:
+            self._leave()
+            raise
         self.join()
         if self._failure is not None:
             try:
@@ -127,6 +132,14 @@ class Work(threading.Thread, Generic[T]):
             _tribound.forget_stop()
             Work._current = self
             self.start()
+
+    def _finish(self) -> None:
+        """Waits for a run that stops after the step that it is in, with a certificate of its last level."""
+        _tribound.request_stop()
+        self._replies.put((None, None))
+        for _ in iter(self._messages.get, None):
+            self._replies.put((None, None))
+        self.join()
 
     def _leave(self) -> None:
         """Ends the run: at once for the caller; the thread ends after the step that it is in."""
