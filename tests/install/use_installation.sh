@@ -2,6 +2,7 @@
 # Uses an installation as its users do, outside the sources.
 #   use_installation.sh program PREFIX SCRATCH                  runs the first of its examples, examines a case with a geometry
 #   use_installation.sh library PREFIX SCRATCH [CMAKE_ARGUMENT...]      builds its C++ examples and runs them
+#   use_installation.sh module PREFIX SCRATCH [PYTHON]                  runs cases from Python
 set -eu
 what=$1 prefix=$2 scratch=$3
 shift 3
@@ -40,6 +41,28 @@ use_library()
   cmake -S "$share/doc/tribound/examples/cpp" -B "$scratch/build" -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH="$prefix" "$@"
   cmake --build "$scratch/build"
   for program in certified_block own_loop load_path; do "$scratch/build/$program"; done
+}
+
+use_module()
+{
+  python=${1:-/usr/bin/python3}
+  packages=$prefix/lib/python3/dist-packages
+  [ "$prefix" = /usr ] || export PYTHONPATH="$packages"
+  for file in py.typed _tribound.pyi; do
+    [ -e "$packages/tribound/$file" ] || fail "$packages/tribound/$file is not installed"
+  done
+  cd "$scratch"
+  # Results without a directory vanish with the result: what the run has left is looked at before.
+  "$python" -B -c "
+import tribound as tb
+assert tb.__file__ == '$packages/tribound/__init__.py', tb.__file__
+result = tb.run('$share/doc/tribound/examples/01_tresca_block/case.toml')
+assert result.is_certified, result.reason
+import os
+page = '$share/tribound/report.html'
+assert (result.directory / 'report.html').exists() or not os.path.exists(page), 'the run has left no report page'
+"
+  "$python" -B "$share/doc/tribound/examples/python/own_load.py"
 }
 
 mkdir -p "$scratch"
