@@ -145,6 +145,16 @@ std::string section(const Level<dim>& level, const std::vector<double>& point,
   return object["sections"][0].dump();
 }
 
+/// The cell of each facet or segment of the contact, by the numbers of contact.csv.
+template <int dim>
+py::array_t<Index> contact_cells(const Level<dim>& level)
+{
+  std::vector<Index> cells;
+  for (const auto& segment : level.kept->discrete->form.segments()) cells.push_back(segment.slave.facet.cell);
+  const auto n = static_cast<py::ssize_t>(cells.size());
+  return owned(std::move(cells), {n});
+}
+
 template <int dim>
 py::dict cell_errors(const Level<dim>& level)
 {
@@ -198,6 +208,7 @@ void bind(py::module_& module, const char* name)
              return io::contact_csv<dim>(level.kept->discrete->form, level.kept->level.u,
                                          level.kept->place());
            })
+      .def("contact_cells", &contact_cells<dim>)
       .def("probe", &probe<dim>, py::arg("points"))
       .def("section", &section<dim>, py::arg("point"), py::arg("normal"), py::arg("within") = "");
 }

@@ -42,6 +42,7 @@ class Contact:
     gap: Floats
     slip: Floats  #: (k, d)
     facet: Ints
+    cell: Ints  #: of the mesh, with that facet
     arc: Floats | None  #: length along the boundary, in 2D
 
     def __len__(self) -> int:
@@ -174,7 +175,8 @@ class Level:
         rows = list(csv.reader(StringIO(self._core.contact_csv())))
         columns = {name: column for name, column in zip(rows[0], zip(*rows[1:]))} if len(rows) > 1 else {}
         names = np.array(columns.get("boundary", ()))
-        return {str(name): _contact(columns, names == name, self.dimension) for name in dict.fromkeys(names)}
+        cells = self._core.contact_cells()
+        return {str(name): _contact(columns, cells, names == name, self.dimension) for name in dict.fromkeys(names)}
 
     def at(self, x: ArrayLike) -> Probe:
         """The solution at a point (d,), or at points (k, d) of the body."""
@@ -249,13 +251,14 @@ class Level:
         return f"{what}: {len(self.mesh.cells)} cells, bound {relative}"
 
 
-def _contact(columns: dict[str, tuple[str, ...]], where: NDArray[np.bool_], d: int) -> Contact:
+def _contact(columns: dict[str, tuple[str, ...]], cells: Ints, where: NDArray[np.bool_], d: int) -> Contact:
     def column(name: str) -> Floats:
         return np.array(columns[name], dtype=float)[where]
 
     def vector(stem: str) -> Floats:
         return np.stack([column(stem + axis) for axis in "xyz"[:d]], axis=1)
 
+    facet = column("facet").astype(np.int32)
     return Contact(
         x=vector(""),
         normal=vector("n"),
@@ -266,6 +269,7 @@ def _contact(columns: dict[str, tuple[str, ...]], where: NDArray[np.bool_], d: i
         status=column("status").astype(np.int32),
         gap=column("gap"),
         slip=vector("slip_"),
-        facet=column("facet").astype(np.int32),
+        facet=facet,
+        cell=cells[facet],
         arc=column("arc") if d == 2 else None,
     )
