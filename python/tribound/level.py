@@ -2,7 +2,7 @@
 
 import csv
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from io import StringIO
@@ -75,6 +75,8 @@ class Level:
 
     def __init__(self, core: Any) -> None:
         self._core = core
+        #: `units` of the certificate, the label of every kind of number; None until the run has ended.
+        self.units: Mapping[str, Any] | None = None
 
     @property
     def number(self) -> int:

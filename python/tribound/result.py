@@ -41,6 +41,8 @@ class Result:
     def __init__(self, place: "Place", levels: list[Level]) -> None:
         self._place = place  # a temporary directory goes with it
         self.levels = levels  #: all with keep_levels, else the last
+        for level in levels:
+            level.units = self.certificate["units"]
 
     @property
     def directory(self) -> Path:
