@@ -9,7 +9,7 @@ from tribound.optional import Axes, needed
 from tribound.projection import Projection, draw_solid, side_of
 from tribound.simplices import Floats, Integers
 from tribound.surface import Surface, von_mises
-from tribound.words import labelled, percent, plural, round_factor
+from tribound.words import labelled, number, percent, plural, round_factor
 
 if TYPE_CHECKING:
     from tribound.level import Level
@@ -20,6 +20,7 @@ SHOWN = (
 )
 UNIFORM = 1e-6  # relative: below this, a field is uniform
 DECADES = 1e5  # the largest eta over the smallest that has a colour of its own
+FEW_DECADES = 50  # top over bottom of an axis on which 2 and 5 have ticks, too
 FROM_ZERO, SIGNED, LOGARITHMIC = "from zero", "signed", "logarithmic"  # scales of colours
 WIDTH, BAR, HEAD = (
     5.0,
@@ -105,11 +106,21 @@ def plot(
         )
     else:
         draw_solid(ax, surface, points, field.values, colours, edges, projection)
-    ax.figure.colorbar(
-        colours, ax=ax, label=labelled(field.words, level.units, field.kind), extend=extend, shrink=0.9
-    )
+    label = labelled(field.words, level.units, field.kind)
+    bar = ax.figure.colorbar(colours, ax=ax, label=label, extend=extend, shrink=0.9)
+    if field.scale == LOGARITHMIC:
+        label_decades(bar.ax.yaxis)
     ax.set_title(_title(level) + (f"\ndisplacements × {factor:g}" if factor else ""), fontsize="medium")
     return ax
+
+
+def label_decades(axis: Any) -> None:
+    """Ticks of a logarithmic axis, in the numbers of this package."""
+    ticker = needed("matplotlib.ticker", "a logarithmic axis")
+    low, top = axis.get_view_interval()
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if top < FEW_DECADES * low else (1,)))
+    axis.set_major_formatter(ticker.FuncFormatter(lambda x, _: number(x, 3)))
+    axis.set_minor_formatter(ticker.NullFormatter())
 
 
 def _projection(level: "Level", view: ArrayLike | None) -> Projection:

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribound.optional import Axes, needed
-from tribound.picture import plot
+from tribound.picture import label_decades, plot
 from tribound.simplices import Floats
-from tribound.words import labelled, number
+from tribound.words import labelled
 
 if TYPE_CHECKING:
     from tribound.level import Contact, Level
@@ -22,7 +22,6 @@ ZONE_COLOUR = {OPEN: "#E9ECEF", STICK: "#DCEBF7", SLIP: "#FBE7D9", TIED: "#D9F0E
 SHOWN = (
     0.99  # share of the boundary whose pressures are within the scale: singular points would flatten the rest
 )
-FEW_DECADES = 50  # top over bottom of an axis on which 2 and 5 have ticks, too
 FAR = 1.8  # sizes of a facet: points of its triangulation that are further apart do not belong together
 
 
@@ -183,12 +182,8 @@ def plot_convergence(result: "Result", ax: Axes | None = None) -> Axes:
         ylabel="relative bound [%]",
         title=certificate["title"] or certificate["file"],
     )
-    ticker = needed("matplotlib.ticker", "plot_convergence()")
     for axis in (ax.xaxis, ax.yaxis):
-        low, top = axis.get_view_interval()
-        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if top < FEW_DECADES * low else (1,)))
-        axis.set_major_formatter(ticker.FuncFormatter(lambda x, _: number(x, 3)))
-        axis.set_minor_formatter(ticker.NullFormatter())
+        label_decades(axis)
     ax.grid(which="major", color="#dde2e7", linewidth=0.8)
     ax.grid(which="minor", color="#eef1f4", linewidth=0.5)
     ax.set_axisbelow(True)

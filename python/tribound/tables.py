@@ -13,8 +13,21 @@ if TYPE_CHECKING:
     from tribound.result import Result
 
 NAMES = ("convergence", "newton", "history", "contact", "quantities", "probes", "sections")
-# Names that a user chose may look like numbers.
+# Names that a user chose may look like numbers, and a column of measured numbers may by chance be whole.
 WORDS = {"body", "boundary", "control", "name", "probe", "region", "rests_on", "section", "unit"}
+COUNTS = {
+    "accepted",
+    "cells",
+    "cuts",
+    "delta_updates",
+    "dofs",
+    "exact",
+    "facet",
+    "in_equilibrium",
+    "level",
+    "load_step",
+}
+COUNTS |= {"newton_steps", "passes", "point", "status", "step"}
 
 
 def table(result: "Result", name: str) -> Any:
@@ -44,7 +57,6 @@ def read(file: Path) -> dict[str, NDArray[Any]]:
 def _column(name: str, words: list[str]) -> NDArray[Any]:
     if name in WORDS:
         return np.array(words, object)
-    try:
-        return np.array([int(word) for word in words])
-    except ValueError:
-        return np.array([float(word) if word else np.nan for word in words])
+    if name in COUNTS:
+        return np.array(words, np.int64)
+    return np.array([float(word) if word else np.nan for word in words])

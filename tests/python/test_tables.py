@@ -20,7 +20,8 @@ class Tables(unittest.TestCase):
         levels = result.certificate["levels"]
         for column, key in (("total_sharp", "bound"), ("dofs", "dofs"), ("relative", "relative")):
             self.assertEqual(list(convergence[column]), [level[key] for level in levels], column)
-        self.assertEqual(np.asarray(convergence["level"]).dtype.kind, "i")
+        kinds = {name: np.asarray(convergence[name]).dtype.kind for name in ("level", "dofs", "neu", "total")}
+        self.assertEqual(kinds, {"level": "i", "dofs": "i", "neu": "f", "total": "f"})
 
     def test_contact_is_that_of_the_level(self):
         result = solved(2, 2)
