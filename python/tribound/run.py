@@ -2,7 +2,9 @@
 
 import json
 import os
+import shutil
 import tempfile
+import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -24,16 +26,14 @@ class Place:
     """Where a run writes: a directory that is given, or a temporary one that lives as long as this."""
 
     def __init__(self, directory: str | os.PathLike[str] | None) -> None:
-        self._temporary: tempfile.TemporaryDirectory[str] | None = None
+        self.is_temporary = directory is None
         if directory is None:
-            if _tribound.is_first_process():
-                self._temporary = tempfile.TemporaryDirectory(prefix="tribound-")
+            first = _tribound.is_first_process()
             if _tribound.n_processes() > 1:
                 _tribound.start()
-            directory = _tribound.from_first(self._temporary.name if self._temporary else "")
-            self.is_temporary = True
-        else:
-            self.is_temporary = False
+            directory = _tribound.from_first(tempfile.mkdtemp(prefix="tribound-") if first else "")
+            if first:
+                weakref.finalize(self, shutil.rmtree, directory, ignore_errors=True)
         self.path = Path(directory).absolute()
         self.path.mkdir(parents=True, exist_ok=True)
 
