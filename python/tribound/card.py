@@ -111,7 +111,7 @@ def _figures(run: Record) -> Iterable[Figure]:
 
 def _time(run: Record) -> float:
     """Of all stages; `times` has a count and times of processors, too."""
-    return sum(run["times"][stage] for stage in STAGES)
+    return float(sum(run["times"][stage] for stage in STAGES))
 
 
 def _kind(run: Record) -> str:

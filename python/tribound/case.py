@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from tribound import _tribound
 from tribound.errors import InputError
 
-Datum = Callable[..., ArrayLike]
+Datum = Callable[..., Any]  # numbers, but mypy knows no type of what NumPy returns
 
 
 class Function:

@@ -53,6 +53,7 @@ def _along(contact: "Contact") -> tuple[Floats, str]:
     for axis in (0, 1):
         if np.ptp(contact.x[:, 1 - axis]) <= 1e-9 * np.ptp(contact.x[:, axis]):
             return contact.x[:, axis], "xy"[axis]
+    assert contact.arc is not None  # in 2D
     return contact.arc - contact.arc.min(), "length along the boundary"
 
 
