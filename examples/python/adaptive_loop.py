@@ -27,22 +27,26 @@ def friction(level: tb.Level) -> float:
     return float((floor.weight * floor.traction[:, 0]).sum())
 
 
-def mark(level: tb.Level) -> npt.NDArray[np.int64]:
+def mark(level: tb.Level) -> npt.NDArray[np.bool_]:
     """Every cell with at least half of the largest indicator, and those where the contact changes."""
     floor = level.contact["bottom"]
-    changing = [cell for cell in np.unique(floor.cell) if np.ptp(floor.status[floor.cell == cell]) > 0]
-    return np.union1d(np.flatnonzero(level.eta >= 0.5 * level.eta.max()), changing)
+    marked: npt.NDArray[np.bool_] = level.eta >= 0.5 * level.eta.max()
+    for cell in np.unique(floor.cell):
+        marked[cell] |= np.ptp(floor.status[floor.cell == cell]) > 0
+    return marked
 
 
 def main() -> None:
     forces: list[float] = []
 
     def stop(level: tb.Level) -> str:
+        assert level.relative is not None
         forces.append(friction(level))
         print(f"level {level.number:2d}: {len(level.mesh.cells):5d} cells, "
               f"bound {100 * level.relative:6.3f} %, friction {forces[-1]:.6f}")
-        changes = np.abs(np.diff(forces[-4:])) < 1e-4 * np.abs(forces[-3:])
-        return "the friction force has settled" if len(changes) == 3 and changes.all() else ""
+        last = np.array(forces[-4:])
+        settled = len(last) == 4 and (np.abs(np.diff(last)) < 1e-4 * np.abs(last[1:])).all()
+        return "the friction force has settled" if settled else ""
 
     result = tb.run(CASE, mark=mark, stop=stop)
     print(f"{result.status}: {result.reason}")

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """How far a block is pulled along a floor, over the coefficient of friction. Each displacement comes with the
-interval that is certain to contain it.
+interval that is certain to contain it, with friction as large as the computed pressure makes it.
 
     friction_study.py [PICTURE]      also draws the curve with its error bars, such as study.png
 """
@@ -46,8 +46,8 @@ def main() -> None:
     for coefficient in coefficients:
         result = tb.run(tb.Case(CASE), set={"boundary.bottom.contact.coefficient": coefficient})
         pull = result.quantities["pull"]
-        assert result.is_certified and pull.lower is not None and pull.upper is not None, result.reason
-        assert pull.lower <= pull.value <= pull.upper
+        assert pull.value is not None and pull.lower is not None and pull.upper is not None, result.reason
+        assert result.is_certified and pull.lower <= pull.value <= pull.upper
         print(f"mu = {coefficient}: {pull.value:.4f} in [{pull.lower:.4f}, {pull.upper:.4f}]")
         rows.append((pull.lower, pull.value, pull.upper))
     bars = np.array(rows)

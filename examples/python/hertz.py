@@ -20,7 +20,8 @@ LARGEST = 2 * FORCE / (np.pi * HALF_WIDTH)
 
 
 def theory(x: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return LARGEST * np.sqrt(np.maximum(0, 1 - (x / HALF_WIDTH) ** 2))
+    pressure: npt.NDArray[np.float64] = LARGEST * np.sqrt(np.maximum(0, 1 - (x / HALF_WIDTH) ** 2))
+    return pressure
 
 
 def draw(level: tb.Level, picture: str) -> None:
@@ -45,10 +46,10 @@ def main() -> None:
     contact = result.level.contact["contact"]
     touched = contact.x[contact.pressure > 0, 0].max()
     deviation = np.abs(contact.pressure - theory(contact.x[:, 0])).max() / LARGEST
-    print(f"{result.status}: bound {100 * result.relative:.2f} %")
+    print(f"{result.status}: bound {result.relative:.2%}")
     print(f"largest pressure {contact.pressure.max():.0f} MPa, Hertz {LARGEST:.0f} MPa")
     print(f"half width {touched:.3f} mm, Hertz {HALF_WIDTH:.3f} mm")
-    print(f"largest deviation of the pressure {100 * deviation:.1f} % of the largest pressure")
+    print(f"largest deviation of the pressure {deviation:.1%} of the largest pressure")
     assert result.is_certified
     assert abs(contact.pressure.max() / LARGEST - 1) < 0.02
     assert abs(touched / HALF_WIDTH - 1) < 0.05

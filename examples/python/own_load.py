@@ -31,7 +31,7 @@ def main() -> None:
     floor = result.level.contact["bottom"]
     on_floor = float((floor.weight * floor.pressure).sum())
     on_top = float(np.trapz(MEASURED, PLACES))
-    print(f"{result.status}: bound {100 * result.relative:.2f} %")
+    print(f"{result.status}: bound {result.relative:.2%}")
     print(f"pressure on the floor {on_floor:.6f}, on the top {on_top:.6f}")
     assert result.is_certified
     assert abs(on_floor - on_top) < 1e-6 * on_top  # equilibrium, up to what Newton's method leaves
