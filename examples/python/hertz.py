@@ -30,15 +30,15 @@ def draw(level: tb.Level, picture: str) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.5))
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.5), layout="constrained")
     level.plot("von_mises", ax=left)
     contact = level.contact["contact"]
     x = np.linspace(0, 1.5 * HALF_WIDTH, 400)
     right.plot(x, theory(x), "k-", label="Hertz")
     right.plot(contact.x[:, 0], contact.pressure, ".", label="computed")
-    right.set(xlim=(0, x[-1]), xlabel="x in mm", ylabel="pressure in MPa")
+    right.set(xlim=(0, x[-1]), xlabel="x [mm]", ylabel="pressure [MPa]")
     right.legend()
-    figure.savefig(picture, dpi=150, bbox_inches="tight")
+    figure.savefig(picture, dpi=150)
 
 
 def main() -> None:
