@@ -18,7 +18,8 @@ mpirun --allow-run-as-root --oversubscribe -n 2 \
   tribound run /usr/share/doc/tribound/examples/01_tresca_block/case.toml --set 'output.directory="/tmp/used/two"'
 mpirun --allow-run-as-root --oversubscribe -n 2 python3 -B -c "
 import tribound as tb
-assert tb.run('/usr/share/doc/tribound/examples/01_tresca_block/case.toml').certificate['program']['processes'] == 2"
+result = tb.run(tb.Case.read('/usr/share/doc/tribound/examples/01_tresca_block/case.toml'))
+assert result.certificate['program']['processes'] == 2"
 apt-get remove --yes --quiet python3-tribound
 if [ -e /usr/lib/python3/dist-packages/tribound ]; then
   echo "empty_root: python3-tribound leaves files behind" >&2

@@ -56,7 +56,7 @@ use_module()
   "$python" -B -c "
 import tribound as tb
 assert tb.__file__ == '$packages/tribound/__init__.py', tb.__file__
-result = tb.run('$share/doc/tribound/examples/01_tresca_block/case.toml')
+result = tb.run(tb.Case.read('$share/doc/tribound/examples/01_tresca_block/case.toml'))
 assert result.is_certified, result.reason
 import os
 page = '$share/tribound/report.html'
