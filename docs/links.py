@@ -2,11 +2,12 @@
 """Checks that what the pages of a directory link to exists.
 
     links.py DIRECTORY             links between files, with their anchors, of all HTML below the directory
-    links.py --sources DIRECTORY   relative links of all Markdown files of the project there
+    links.py --sources DIRECTORY   relative links of all Markdown files and notebooks of the project there
 
 Links to other hosts are not followed.
 """
 
+import json
 import re
 import sys
 from functools import cache
@@ -51,10 +52,17 @@ def broken_links(file):
             yield link
 
 
+def markdown(file):
+    """The text of a Markdown file without its code, or of a notebook."""
+    if file.suffix == ".ipynb":
+        cells = json.loads(file.read_text())["cells"]
+        return "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
+    return re.sub(r"^```.*?^```", "", file.read_text(), flags=re.S | re.M)
+
+
 def broken_markdown_links(file):
-    """Yields the relative links of a Markdown file to files that do not exist."""
-    text = re.sub(r"^```.*?^```", "", file.read_text(), flags=re.S | re.M)
-    for target in re.findall(r"\]\(([^)\s]+)\)", text):
+    """Yields the relative links of a Markdown file or notebook to files that do not exist."""
+    for target in re.findall(r"\]\(([^)\s]+)\)", markdown(file)):
         path = target.partition("#")[0]
         if path and not re.match(r"[a-z]+:", path) and not (file.parent / path).exists():
             yield target
@@ -63,8 +71,8 @@ def broken_markdown_links(file):
 def main():
     *sources, directory = sys.argv[1:]
     directory = Path(directory)
-    suffix, check = ("md", broken_markdown_links) if sources else ("html", broken_links)
-    files = [file for file in directory.rglob(f"*.{suffix}") if not SKIPPED & set(file.relative_to(directory).parts)]
+    suffixes, check = ({".md", ".ipynb"}, broken_markdown_links) if sources else ({".html"}, broken_links)
+    files = [file for file in directory.rglob("*") if file.suffix in suffixes and not SKIPPED & set(file.relative_to(directory).parts)]
     found = [(file, link) for file in sorted(files) for link in check(file)]
     for file, link in found:
         print(f"links: {file}: {link} leads nowhere", file=sys.stderr)

@@ -5,12 +5,10 @@ The style is inline and its colours suit light and dark pages: notebooks may dro
 
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from tribound.words import count, measured, number, percent, plural, quantity_unit, seconds, unit
-
-if TYPE_CHECKING:
-    from tribound.result import Result
+from tribound.result import Result
+from tribound.words import Units, count, measured, number, percent, plural, quantity_unit, seconds, unit
 
 Record = Mapping[str, Any]
 
@@ -20,6 +18,10 @@ VERDICTS = {
     "budget": ("Budget used up", "!", WARN),
     "not certified": ("Not certified", "×", BAD),
     "failed": ("Failed", "×", BAD),
+}
+TARGETS = {
+    "solution": "from the exact solution",
+    "tresca_with_computed_threshold": "for the computed friction threshold",
 }
 RULE = "1px solid rgba(128,128,128,.3)"
 SOFT = "opacity:.72"
@@ -47,10 +49,8 @@ def _share(run: Record) -> tuple[str, str]:
         worst = max(step["relative_path"] or 0 for step in run["steps"])
         return "In every load step the error", f"{percent(worst)} of the largest norm of the stress up to it"
     if run["relative"] is None:
-        return (
-            "The error",
-            f"{measured(number(run['bound']), unit(run['units'], 'stress_norm'))} of a stress that is zero",
-        )
+        size = measured(number(run["bound"]), unit(run["units"], "stress_norm"))
+        return "The error", f"{size} of a stress that is zero"
     return "The error", f"{percent(run['relative'])} of the norm of the stress"
 
 
@@ -79,39 +79,26 @@ def interval(quantity: Record, label: str) -> str:
 def _figures(run: Record) -> Iterable[Figure]:
     units = run["units"]
     if run.get("relative") is not None:
-        yield Figure(
-            percent(run["relative"]),
-            "bound of the error",
-            measured(number(run["bound"]), unit(units, "stress_norm")),
-        )
+        size = measured(number(run["bound"]), unit(units, "stress_norm"))
+        yield Figure(percent(run["relative"]), "bound of the error", size)
     energy = run.get("energy_error") or {}
     if energy.get("relative"):
-        target = {
-            "solution": "from the exact solution",
-            "tresca_with_computed_threshold": "for the computed friction threshold",
-        }
-        yield Figure(
-            percent(energy["relative"]), "error in the energy norm, at most", target[energy["guaranteed_for"]]
-        )
+        target = TARGETS[energy["guaranteed_for"]]
+        yield Figure(percent(energy["relative"]), "error in the energy norm, at most", target)
     if _is_solved(run):
         for quantity in (run.get("quantities") or [])[:QUANTITIES]:
-            yield Figure(
-                number(quantity["value"], 5),
-                quantity["name"],
-                interval(quantity, quantity_unit(units, quantity["name"])),
-            )
+            bar = interval(quantity, quantity_unit(units, quantity["name"]))
+            yield Figure(number(quantity["value"], 5), quantity["name"], bar)
         yield Figure(number(run["max_displacement"]), "largest displacement", unit(units, "length"))
-    yield Figure(
-        count(run["cells"]),
-        "cells",
-        f"{plural(run['dofs'], 'unknown')}, {plural(len(run['levels']), 'mesh', 'meshes')}",
-    )
+    size = f"{plural(run['dofs'], 'unknown')}, {plural(len(run['levels']), 'mesh', 'meshes')}"
+    yield Figure(count(run["cells"]), "cells", size)
     yield Figure(seconds(_time(run)), "computing time")
 
 
 def _time(run: Record) -> float:
     """Of all stages; `times` has a count and times of processors, too."""
-    return float(sum(run["times"][stage] for stage in STAGES))
+    total: float = sum(run["times"][stage] for stage in STAGES)
+    return total
 
 
 def _kind(run: Record) -> str:
@@ -124,35 +111,27 @@ CARD = (
     "font-variant-numeric:tabular-nums;"
     "font-family:system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif"
 )
-MARK = (
-    "flex:none;width:1.7em;line-height:1.7em;align-self:start;border-radius:50%;text-align:center;color:#fff"
-)
+MARK = "flex:none;width:1.7em;line-height:1.7em;align-self:start;border-radius:50%;text-align:center"
+TITLE = "font-size:1.25em;font-weight:650;padding:.5em .8em 0"
+FIGURES = "display:flex;flex-wrap:wrap;gap:.9em 1.9em;padding:.8em 1em .9em"
 
 
-def html(result: "Result") -> str:
+def html(result: Result) -> str:
     """The card of a result, for a notebook."""
     run = result.certificate
     title, mark, tone = VERDICTS[run["status"]]
-    verdict = _box(
-        "div", "", _box("strong", "font-size:1.08em", title), _box("div", "", escape(guarantee(run)))
-    )
+    circle = _box("span", f"{MARK};color:#fff;background:rgb({tone})", mark)
+    strong = _box("strong", "font-size:1.08em", title)
+    words = _box("div", "", strong, _box("div", "", escape(guarantee(run))))
     parts = [
-        _box(
-            "div", "font-size:1.25em;font-weight:650;padding:.5em .8em 0", escape(run["title"] or run["file"])
-        ),
+        _box("div", TITLE, escape(run["title"] or run["file"])),
         _box("div", f"font-size:.86em;padding:0 1.16em .6em;{SOFT}", escape(_kind(run))),
-        _box(
-            "div",
-            f"display:flex;gap:.8em;{_band(tone)}",
-            _box("span", f"{MARK};background:rgb({tone})", mark),
-            verdict,
-        ),
+        _box("div", f"display:flex;gap:.8em;{_band(tone)}", circle, words),
     ]
     if run.get("warnings"):
         parts.append(_warnings(run["warnings"]))
     if run.get("cells"):
-        figures = "".join(map(_figure, _figures(run)))
-        parts.append(_box("div", "display:flex;flex-wrap:wrap;gap:.9em 1.9em;padding:.8em 1em .9em", figures))
+        parts.append(_box("div", FIGURES, *map(_figure, _figures(run))))
     return _box("div", CARD, *parts)
 
 
@@ -174,34 +153,26 @@ def _figure(figure: Figure) -> str:
 
 
 def _warnings(warnings: Sequence[Record]) -> str:
-    texts = [
-        f"{warning['where']}: {warning['text']}" if warning["where"] else warning["text"]
-        for warning in warnings
-    ]
-    items = _box(
-        "ul", "margin:.2em 0 0;padding-left:1.2em", *(_box("li", "", escape(words)) for words in texts)
-    )
-    return _box("div", _band(WARN), _box("strong", "", plural(len(texts), "warning")), items)
+    texts = [": ".join(filter(None, (warning["where"], warning["text"]))) for warning in warnings]
+    items = [_box("li", "", escape(words)) for words in texts]
+    title = _box("strong", "", plural(len(texts), "warning"))
+    return _box("div", _band(WARN), title, _box("ul", "margin:.2em 0 0;padding-left:1.2em", *items))
 
 
-def text(result: "Result") -> str:
+def text(result: Result) -> str:
     """The same in a few lines, for a terminal."""
     run = result.certificate
     lines = [f"{VERDICTS[run['status']][0]}: {run['title'] or run['file']}", guarantee(run)]
     if run.get("cells"):
-        lines.append(
-            f"{plural(run['cells'], 'cell')} of degree {run['p']}, {plural(run['dofs'], 'unknown')}, "
-            f"{seconds(_time(run))}"
-        )
-    known = run.get("quantities") or []
-    bars = [
-        f"{q['name']} {number(q['value'], 5)} ({interval(q, quantity_unit(run['units'], q['name']))})"
-        for q in known[:QUANTITIES]
-    ]
-    lines += ["; ".join(bars)] if bars and _is_solved(run) else []
-    lines += (
-        [f"{plural(len(run['warnings']), 'warning')}: see .certificate[\"warnings\"]"]
-        if run.get("warnings")
-        else []
-    )
+        size = f"{plural(run['cells'], 'cell')} of degree {run['p']}, {plural(run['dofs'], 'unknown')}"
+        lines.append(f"{size}, {seconds(_time(run))}")
+    if _is_solved(run) and run.get("quantities"):
+        lines.append("; ".join(_bar(quantity, run["units"]) for quantity in run["quantities"][:QUANTITIES]))
+    if run.get("warnings"):
+        lines.append(f"{plural(len(run['warnings']), 'warning')}: result.warnings")
     return "\n".join(lines)
+
+
+def _bar(quantity: Record, units: Units) -> str:
+    label = quantity_unit(units, quantity["name"])
+    return f"{quantity['name']} {number(quantity['value'], 5)} ({interval(quantity, label)})"

@@ -4,16 +4,15 @@ Every cell has its own points, because stresses are discontinuous. Arrays have t
 level_NNN.vtu (docs/output.md).
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from tribound.level import Level
+from tribound.mesh import Floats
 from tribound.optional import needed
-from tribound.simplices import Floats, cut, vtk_order
+from tribound.simplices import cut, vtk_order
 from tribound.surface import von_mises
-
-if TYPE_CHECKING:
-    from tribound.level import Level
 
 VTK_LAGRANGE = {2: 69, 3: 71}
 MESHIO = {(2, 1): "triangle", (2, 2): "triangle6", (3, 1): "tetra", (3, 2): "tetra10"}  # dimension, degree
@@ -24,7 +23,7 @@ def _in_space(values: Floats) -> Floats:
     return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, 3 - values.shape[-1])])
 
 
-def _point_data(level: "Level") -> dict[str, Floats]:
+def _point_data(level: Level) -> dict[str, Floats]:
     """At the nodes of the cells (cells, nodes, components)."""
     data = {"displacement": _in_space(level.displacement[level.cell_nodes]), "stress": level.stress}
     if level.equilibrated_stress is not None:
@@ -32,7 +31,7 @@ def _point_data(level: "Level") -> dict[str, Floats]:
     return {**data, "von_mises": von_mises(level.stress)}
 
 
-def _cell_data(level: "Level") -> dict[str, Any]:
+def _cell_data(level: Level) -> dict[str, Any]:
     components = {f"eta_{name}": eta for name, eta in level.eta_components.items()}
     return {"eta_tot": level.eta, **components, "region": level.mesh.region_of}
 
@@ -41,9 +40,9 @@ def _flat(values: Floats) -> Floats:
     return np.ascontiguousarray(values).reshape(-1, *values.shape[2:])
 
 
-def to_meshio(level: "Level") -> Any:
-    """A meshio.Mesh: cells of degree 1 and 2 as they are; for a higher degree p
-    meshio has no names, and each cell is cut into p^d flat ones through its nodes.
+def to_meshio(level: Level) -> Any:
+    """A meshio.Mesh: cells of degree 1 and 2 as they are, those of a higher degree p, for which meshio has no
+    names, cut into p^d flat ones through their nodes.
     """
     meshio = needed("meshio", "to_meshio()")
     d, p = level.dimension, level.degree
@@ -65,11 +64,10 @@ def to_meshio(level: "Level") -> Any:
     )
 
 
-def to_vtk(level: "Level") -> Any:
+def to_vtk(level: Level) -> Any:
     """A vtkUnstructuredGrid of Lagrange cells of the degree of the level: VTK interpolates exactly."""
-    core, support = needed("vtkmodules.vtkCommonCore", "to_vtk()"), needed(
-        "vtkmodules.util.numpy_support", "to_vtk()"
-    )
+    core = needed("vtkmodules.vtkCommonCore", "to_vtk()")
+    support = needed("vtkmodules.util.numpy_support", "to_vtk()")
     model = needed("vtkmodules.vtkCommonDataModel", "to_vtk()")
     m, n = level.cell_nodes.shape
     order = vtk_order(level.cell_node_indices)
@@ -96,6 +94,6 @@ def _name_components(grid: Any) -> None:
             array.SetComponentName(i, component)
 
 
-def to_pyvista(level: "Level") -> Any:
+def to_pyvista(level: Level) -> Any:
     """The same as a pyvista.UnstructuredGrid."""
     return needed("pyvista", "to_pyvista()").wrap(to_vtk(level))

@@ -1,32 +1,27 @@
 """Draws a field on the body of a level, by matplotlib."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tribound.level import Level
+from tribound.mesh import Floats
 from tribound.optional import Axes, needed
 from tribound.projection import Projection, draw_solid, side_of
-from tribound.simplices import Floats, Integers
+from tribound.simplices import Integers
 from tribound.surface import Surface, von_mises
 from tribound.words import labelled, number, percent, plural, round_factor
 
-if TYPE_CHECKING:
-    from tribound.level import Level
-
+BLUE, GREEN, RED = "#0072B2", "#009E73", "#D55E00"  # Okabe and Ito's, distinguishable for colour-blind people
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
-SHOWN = (
-    0.995  # share of the surface whose stresses are within the scale: singular points would flatten the rest
-)
+# Share of the surface whose stresses are within the scale: singular points would flatten the rest.
+SHOWN = 0.995
 UNIFORM = 1e-6  # relative: below this, a field is uniform
 DECADES = 1e5  # the largest eta over the smallest that has a colour of its own
 FEW_DECADES = 50  # top over bottom of an axis on which 2 and 5 have ticks, too
 FROM_ZERO, SIGNED, LOGARITHMIC = "from zero", "signed", "logarithmic"  # scales of colours
-WIDTH, BAR, HEAD = (
-    5.0,
-    1.3,
-    0.9,
-)  # inches of a figure: the body, beside it the scale of colours, above and below it words
+WIDTH, BAR, HEAD = 5.0, 1.3, 0.9  # inches: the body, beside it the scale, above and below it words
 TRIANGLES = 40_000  # a picture has about as many; more than two pieces per degree and side are of no use
 
 
@@ -43,9 +38,7 @@ def field_on(surface: Surface, scalars: str, equilibrated: bool) -> Field:
     if scalars == "von_mises" or scalars in COMPONENTS:
         nodal = level.equilibrated_stress if equilibrated else level.stress
         if nodal is None:
-            raise ValueError(
-                "without a bound there is no equilibrated stress; equilibrated=False plots the computed one"
-            )
+            raise ValueError("without a bound there is no equilibrated stress; use equilibrated=False")
         stress = surface.at_points(nodal)
         if scalars == "von_mises":
             return Field(von_mises(stress), "von Mises stress", "stress", FROM_ZERO)
@@ -64,7 +57,7 @@ def field_on(surface: Surface, scalars: str, equilibrated: bool) -> Field:
 
 
 def plot(
-    level: "Level",
+    level: Level,
     scalars: str = "von_mises",
     *,
     deformation: float | str | None = None,
@@ -90,22 +83,15 @@ def plot(
     projection = _projection(level, view) if level.dimension == 3 else None
     if ax is None:
         width, height = np.ptp(projection(points)[:, :2] if projection else points, axis=0)
-        ax = pyplot.figure(
-            figsize=(WIDTH + BAR, float(np.clip(WIDTH * height / width, 1.4, WIDTH)) + HEAD),
-            layout="constrained",
-        ).add_subplot()
+        size = (WIDTH + BAR, float(np.clip(WIDTH * height / width, 1.4, WIDTH)) + HEAD)
+        ax = pyplot.figure(figsize=size, layout="constrained").add_subplot()
     if projection is None:
-        _draw_flat(
-            ax,
-            surface,
-            points,
-            field.values,
-            colours,
-            edges,
-            labels=[labelled(a, level.units, "length") for a in "xy"],
-        )
+        _draw_flat(ax, surface, points, field.values, colours, edges)
+        ax.set(xlabel=labelled("x", level.units, "length"), ylabel=labelled("y", level.units, "length"))
     else:
-        draw_solid(ax, surface, points, field.values, colours, edges, projection)
+        at_points = len(field.values) == len(points)
+        means = field.values[surface.triangles].mean(axis=1) if at_points else field.values[surface.facet]
+        draw_solid(ax, surface, points, colours.to_rgba(means), edges, projection)
     label = labelled(field.words, level.units, field.kind)
     bar = ax.figure.colorbar(colours, ax=ax, label=label, extend=extend, shrink=0.9)
     if field.scale == LOGARITHMIC:
@@ -123,12 +109,12 @@ def label_decades(axis: Any) -> None:
     axis.set_minor_formatter(ticker.NullFormatter())
 
 
-def _projection(level: "Level", view: ArrayLike | None) -> Projection:
+def _projection(level: Level, view: ArrayLike | None) -> Projection:
     up = _up(level)
     return Projection(side_of(up) if view is None else np.asarray(view, float), up)
 
 
-def _up(level: "Level") -> Floats:
+def _up(level: Level) -> Floats:
     """The axis along which contact pushes the body, where most of its force is along one, else the last."""
     parts = [-(c.weight * c.pressure)[:, None] * c.normal for c in level.contact.values()]
     forces = np.concatenate([np.zeros((1, 3)), *parts])
@@ -140,13 +126,13 @@ def _up(level: "Level") -> Floats:
     return up
 
 
-def _title(level: "Level") -> str:
+def _title(level: Level) -> str:
     where = f"Level {level.number}" if level.t is None else f"t = {level.t:.4g}"
     bound = "" if level.relative is None else f", bound {percent(level.relative)}"
     return f"{where}: {plural(len(level.mesh.cells), 'cell')}{bound}"
 
 
-def _factor(level: "Level", deformation: float | str | None) -> float:
+def _factor(level: Level, deformation: float | str | None) -> float:
     if deformation != "auto":
         return float(deformation or 0)
     largest = np.linalg.norm(level.displacement, axis=1).max()
@@ -190,15 +176,11 @@ def _colours(field: Field, surface: Surface, points: Floats) -> tuple[Any, str]:
     margin = UNIFORM * (top - low)
     is_below, is_above = field.values.min() < low - margin, field.values.max() > top + margin
     extend = "both" if is_below and is_above else "min" if is_below else "max" if is_above else "neither"
-    return (
-        maps.ScalarMappable(norm, "RdBu_r" if field.scale == SIGNED and low < 0 < top else "viridis"),
-        extend,
-    )
+    name = "RdBu_r" if field.scale == SIGNED and low < 0 < top else "viridis"
+    return maps.ScalarMappable(norm, name), extend
 
 
-def _draw_flat(
-    ax: Axes, surface: Surface, points: Floats, values: Floats, colours: Any, edges: bool, labels: list[str]
-) -> None:
+def _draw_flat(ax: Axes, surface: Surface, points: Floats, values: Floats, colours: Any, edges: bool) -> None:
     lines = needed("matplotlib.collections", "plot()").LineCollection
     style = {"cmap": colours.cmap, "norm": colours.norm, "rasterized": True}
     if len(values) == len(points):
@@ -209,7 +191,7 @@ def _draw_flat(
     if edges:
         ax.add_collection(lines(points[surface.lines[~sharp]], colors="white", linewidths=0.4, alpha=0.5))
     ax.add_collection(lines(points[surface.lines[sharp]], colors="#222222", linewidths=0.8, capstyle="round"))
-    ax.set(aspect="equal", xlabel=labels[0], ylabel=labels[1])
+    ax.set_aspect("equal")
     ax.margins(0.02)
     ax.autoscale_view()
     ax.spines[:].set_visible(False)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Floats = NDArray[np.float64]
+from tribound.mesh import Floats
+
 Integers = NDArray[np.integer[Any]]
 
 # The sub-simplices in the order and orientation in which VTK visits them.

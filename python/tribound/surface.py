@@ -1,14 +1,12 @@
 """What is seen of a level: in 2D its cells, in 3D the facets of the surface, cut into flat triangles."""
 
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tribound.simplices import Floats, Integers, cut, functions
-
-if TYPE_CHECKING:
-    from tribound.level import Level
+from tribound.level import Level
+from tribound.mesh import Floats
+from tribound.simplices import Integers, cut, functions
 
 # Corners of what is seen of a cell: in 2D the cell itself, in 3D facet i, opposite vertex i.
 SEEN = {2: np.array([[0, 1, 2]]), 3: np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])}
@@ -18,7 +16,7 @@ SHARP = np.cos(np.radians(30))  # facets that meet at a larger angle form an edg
 class Surface:
     """Facets f = 0, 1, ..., each with points of its own and n^2 triangles."""
 
-    def __init__(self, level: "Level", n: int) -> None:
+    def __init__(self, level: Level, n: int) -> None:
         self.level = level
         cells, sides = outer_facets(level)
         order = np.argsort(sides, kind="stable")
@@ -82,7 +80,7 @@ class Surface:
         return is_sharp[edge]
 
 
-def outer_facets(level: "Level") -> tuple[Integers, Integers]:
+def outer_facets(level: Level) -> tuple[Integers, Integers]:
     """Cells and the numbers of their facets in SEEN: those of one cell alone; in 2D all cells."""
     cells = level.mesh.cells
     if level.dimension == 2:

@@ -4,33 +4,21 @@ import csv
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from tribound.result import Result
+from tribound.result import Result
 
 NAMES = ("convergence", "newton", "history", "contact", "quantities", "probes", "sections")
 # Names that a user chose may look like numbers, and a column of measured numbers may by chance be whole.
 WORDS = {"body", "boundary", "control", "name", "probe", "region", "rests_on", "section", "unit"}
-COUNTS = {
-    "accepted",
-    "cells",
-    "cuts",
-    "delta_updates",
-    "dofs",
-    "exact",
-    "facet",
-    "in_equilibrium",
-    "level",
-    "load_step",
-}
-COUNTS |= {"newton_steps", "passes", "point", "status", "step"}
+COUNTS = {"accepted", "cells", "cuts", "delta_updates", "dofs", "exact", "facet", "in_equilibrium", "level"}
+COUNTS |= {"load_step", "newton_steps", "passes", "point", "status", "step"}
 
 
-def table(result: "Result", name: str) -> Any:
+def table(result: Result, name: str) -> Any:
     """`name`: convergence, newton, history, contact, quantities, probes or sections.
 
     Unknown numbers are NaN. ValueError: no such table; FileNotFoundError: this run has not written it.

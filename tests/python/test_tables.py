@@ -14,7 +14,7 @@ from tribound import tables
 
 
 class Tables(unittest.TestCase):
-    def test_convergence_is_that_of_the_certificate(self):
+    def test_convergence_is_that_of_the_certificate(self) -> None:
         result = solved(2, 2)
         convergence = result.table("convergence")
         levels = result.certificate["levels"]
@@ -23,14 +23,14 @@ class Tables(unittest.TestCase):
         kinds = {name: np.asarray(convergence[name]).dtype.kind for name in ("level", "dofs", "neu", "total")}
         self.assertEqual(kinds, {"level": "i", "dofs": "i", "neu": "f", "total": "f"})
 
-    def test_contact_is_that_of_the_level(self):
+    def test_contact_is_that_of_the_level(self) -> None:
         result = solved(2, 2)
         contact = result.table("contact")
         self.assertEqual(set(contact["boundary"]), {"bottom"})
         np.testing.assert_array_equal(contact["pressure"], result.level.contact["bottom"].pressure)
 
     @unittest.skipUnless(find_spec("pandas"), "no pandas")
-    def test_with_and_without_pandas(self):
+    def test_with_and_without_pandas(self) -> None:
         import pandas
 
         result = solved(2, 2)
@@ -43,7 +43,7 @@ class Tables(unittest.TestCase):
         for name, values in columns.items():
             np.testing.assert_array_equal(values, frame[name])
 
-    def test_names_stay_words_and_unknown_numbers_are_nan(self):
+    def test_names_stay_words_and_unknown_numbers_are_nan(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "contact.csv").write_text(
                 'boundary,pressure,pair\n007,0.1,\nNA,-2e-05,0\n"a, b",3,1\n'
@@ -54,7 +54,7 @@ class Tables(unittest.TestCase):
         self.assertTrue(np.isnan(table["pair"][0]))
         self.assertEqual(list(table["pair"][1:]), [0, 1])
 
-    def test_says_what_there_is(self):
+    def test_says_what_there_is(self) -> None:
         result = solved(2, 2)
         with self.assertRaisesRegex(
             ValueError, "no table 'contacts'; there are convergence, newton, .*contact"
