@@ -98,7 +98,7 @@ class Vtk(unittest.TestCase):
         written, ours = reader.GetOutput(), result.level.to_vtk()
         self.assertEqual(written.GetCellType(0), ours.GetCellType(0))
         corners = [vtk_to_numpy(grid.GetPoints().GetData()) for grid in (written, ours)]
-        np.testing.assert_allclose(*corners, rtol=0, atol=1e-15)
+        np.testing.assert_allclose(corners[0], corners[1], rtol=0, atol=1e-15)
         for data in ("GetPointData", "GetCellData"):
             known, here = getattr(written, data)(), getattr(ours, data)()
             for i in range(here.GetNumberOfArrays()):

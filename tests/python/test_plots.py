@@ -26,7 +26,10 @@ if find_spec("matplotlib"):
 def mises(s: Floats) -> Floats:
     deviator = s.copy()
     deviator[:, :3] -= s[:, :3].mean(axis=1, keepdims=True)
-    return np.sqrt(1.5 * ((deviator[:, :3] ** 2).sum(axis=1) + 2 * (deviator[:, 3:] ** 2).sum(axis=1)))
+    stresses: Floats = np.sqrt(
+        1.5 * ((deviator[:, :3] ** 2).sum(axis=1) + 2 * (deviator[:, 3:] ** 2).sum(axis=1))
+    )
+    return stresses
 
 
 def drawn(axes: Any, kind: type) -> list[Any]:
@@ -63,6 +66,7 @@ class Plots(unittest.TestCase):
                 self.assertGreater(len(sample), 20)
                 probe = level.at(points[sample])
                 stress = probe.equilibrated_stress if equilibrated else probe.stress
+                assert stress is not None
                 expected = (
                     mises(stress)
                     if scalars == "von_mises"
@@ -199,7 +203,8 @@ class Missing(unittest.TestCase):
     def test_says_how_to_install(self) -> None:
         result = solved(2, 1)
         with mock.patch.dict(sys.modules, {"matplotlib.pyplot": None}):
-            for call in (result.level.plot, result.level.plot_contact, result.plot_convergence):
+            calls: list[Any] = [result.level.plot, result.level.plot_contact, result.plot_convergence]
+            for call in calls:
                 self.assertRaisesRegex(ImportError, "apt install python3-matplotlib", call)
 
 

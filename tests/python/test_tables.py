@@ -5,6 +5,7 @@ import unittest
 from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 from unittest import mock
 
 import numpy as np
@@ -48,7 +49,8 @@ class Tables(unittest.TestCase):
             (Path(folder) / "contact.csv").write_text(
                 'boundary,pressure,pair\n007,0.1,\nNA,-2e-05,0\n"a, b",3,1\n'
             )
-            table = tables.table(SimpleNamespace(directory=Path(folder)), "contact")
+            result: Any = SimpleNamespace(directory=Path(folder))
+            table = tables.table(result, "contact")
         self.assertEqual(list(table["boundary"]), ["007", "NA", "a, b"])
         self.assertEqual(list(table["pressure"]), [0.1, -2e-05, 3])
         self.assertTrue(np.isnan(table["pair"][0]))

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 from base64 import b64decode, b64encode
+from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
@@ -23,15 +24,14 @@ NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 def run() -> Any:
     """The notebook, executed."""
-    import nbformat
-    from nbclient import NotebookClient
+    nbformat: Any = import_module("nbformat")
 
     notebook = nbformat.read(FILE, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(JUPYTER_RUNTIME_DIR=folder, IPYTHONDIR=folder, MPLCONFIGDIR=folder)
         os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # else debugpy prints warnings
         place = {"metadata": {"path": folder}}
-        NotebookClient(
+        import_module("nbclient").NotebookClient(
             notebook, timeout=300, kernel_name="python3", resources=place, record_timing=False
         ).execute()
     return notebook
@@ -49,8 +49,7 @@ def compressed(picture: str) -> str:
 
 def write() -> None:
     """Stores what the notebook says."""
-    import nbformat
-
+    nbformat: Any = import_module("nbformat")
     notebook = run()
     for cell in notebook.cells:
         for output in cell.get("outputs", ()):
@@ -85,8 +84,7 @@ def differences(expected: str, found: str) -> str | None:
 )
 class Tutorial(unittest.TestCase):
     def test_says_what_is_stored(self) -> None:
-        import nbformat
-
+        nbformat: Any = import_module("nbformat")
         stored = nbformat.read(FILE, as_version=4)
         for number, (before, after) in enumerate(zip(stored.cells, run().cells)):
             expected, found = said(before), said(after)
