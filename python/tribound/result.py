@@ -63,7 +63,7 @@ class Result:
 
     @property
     def status(self) -> str:
-        """certified, budget, uncertified or failed."""
+        """certified, budget (the bound holds, but is above the tolerance), not certified or failed."""
         return str(self.certificate["status"])
 
     @property
