@@ -56,7 +56,8 @@ bool same(const case_file::Node& a, const case_file::Node& b)
                if constexpr (std::is_same_v<Value, case_file::Node::Table> ||
                              std::is_same_v<Value, case_file::Node::Array>)
                  return same(value, other);
-               else if constexpr (std::is_same_v<Value, case_file::Node::DateOrTime>)
+               else if constexpr (std::is_same_v<Value, case_file::Node::DateOrTime> ||
+                                  std::is_same_v<Value, problem::FieldFunction>)  // not in a text
                  return true;
                else
                  return value == other;
