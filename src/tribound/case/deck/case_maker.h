@@ -49,11 +49,20 @@ class CaseMaker
     int master;
   };
 
+  /// What the nodes of a region say.
+  struct RegionTemperature
+  {
+    const DeckLoad* load = nullptr;   ///< null: none
+    const DeckLoad* other = nullptr;  ///< the first that differs
+    bool has_nodes_without = false;
+  };
+
   void find_history();
   void find_regions();
   void check_plane(const mesh::InpModel& model);
   void find_boundaries();
-  [[nodiscard]] std::vector<Index> faces_of_displacement(const DeckLoad& load);
+  /// The faces that it holds; `faces` are those all of whose nodes are its members.
+  [[nodiscard]] std::vector<Index> faces_of_displacement(const DeckLoad& load, std::vector<Index> faces);
   /// The faces of bodies all of whose nodes are held in one direction that lie across it.
   void add_faces_across(const DeckLoad& load, const std::set<Index>& whole, std::vector<Index>& faces);
 
@@ -61,12 +70,13 @@ class CaseMaker
   [[nodiscard]] bool are_corners_on(const std::vector<Index>& faces, const std::set<Index>& whole) const;
   [[nodiscard]] const DeckMaterial* material_of(const std::string& region) const;
   [[nodiscard]] Node material(const Groups::Part& region) const;
-  [[nodiscard]] Node::Table load(const Groups::Part& region) const;
+  [[nodiscard]] Node::Table load(std::size_t region) const;
   void add_body_force(const Groups::Part& region, Node::Table& table) const;
-  void add_temperature(const Groups::Part& region, Node::Table& table) const;
+  void add_temperature(std::size_t region, Node::Table& table) const;
+  [[nodiscard]] std::vector<RegionTemperature> temperatures(const std::vector<DeckLoad>& loads) const;
   /// The course of the temperature at all nodes of a region; null if there is none.
-  [[nodiscard]] const Course* temperature_of(const Groups::Part& region,
-                                             const std::vector<DeckLoad>& loads) const;
+  [[nodiscard]] const Course* course_of(const RegionTemperature& temperature,
+                                        const std::string& region) const;
   [[nodiscard]] Node::Table boundary(const Groups::Part& part) const;
   /// The motion of a rigid body: `rigid`, or `displacement` where all of it is given.
   void add_rigid(const DeckRigid& rigid, Index number, Node::Table& table) const;
@@ -94,6 +104,8 @@ class CaseMaker
   Groups cell_groups_{};
   Groups face_groups_{};
   std::vector<Groups::Part> regions_{};
+  std::vector<RegionTemperature> temperatures_{};  ///< of the regions
+  std::vector<RegionTemperature> initial_temperatures_{};
   std::vector<Groups::Part> boundaries_{};
   std::vector<Node::Table> tables_{};  ///< of the boundaries; empty for those that only touch
   std::vector<int> group_of_load_{};   ///< -1: none

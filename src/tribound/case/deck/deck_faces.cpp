@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tribound/base/sorted.h"
+#include "tribound/mesh/import/node_sets.h"
 
 namespace tribound::case_file
 {
@@ -31,8 +32,25 @@ Index DeckFaces::find(const FaceNodes& face) const
   return found == faces_.end() || found->key != key ? -1 : static_cast<Index>(found - faces_.begin());
 }
 
-template <class Counts>
-std::vector<Index> DeckFaces::faces_where(std::span<const Index> nodes, const Counts& counts) const
+std::vector<Index> DeckFaces::with_all_nodes(std::span<const Index> nodes) const
+{
+  return with_all_nodes_of(std::array{nodes})[0];
+}
+
+std::vector<std::vector<Index>> DeckFaces::with_all_nodes_of(
+    std::span<const std::span<const Index>> sets) const
+{
+  const mesh::SetsOfNodes sets_of_nodes(mesh_.nodes.size(), sets);
+  std::vector<std::vector<Index>> result(sets.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f)
+  {
+    const FaceNodes face = nodes(static_cast<Index>(f));
+    for (const Index set : sets_of_nodes.with_all(face.span())) result[set].push_back(static_cast<Index>(f));
+  }
+  return result;
+}
+
+std::vector<Index> DeckFaces::loaded_by(std::span<const Index> nodes) const
 {
   std::vector<char> is_given(mesh_.nodes.size(), 0);
   for (const Index node : nodes) is_given[node] = 1;
@@ -40,25 +58,12 @@ std::vector<Index> DeckFaces::faces_where(std::span<const Index> nodes, const Co
   for (std::size_t f = 0; f < faces_.size(); ++f)
   {
     const FaceNodes face = this->nodes(static_cast<Index>(f));
-    bool has_all = true;
-    for (int i = 0; i < face.type.n_nodes && has_all; ++i)
-      has_all = !counts(face.type, i) || is_given[face.nodes[i]] != 0;
-    if (has_all) result.push_back(static_cast<Index>(f));
+    const bool corners_count = face.type != ElementType{Shape::triangle, 6};
+    if (std::ranges::all_of(face.span().subspan(corners_count ? 0 : 3),
+                            [&](Index node) { return is_given[node] != 0; }))
+      result.push_back(static_cast<Index>(f));
   }
   return result;
-}
-
-std::vector<Index> DeckFaces::with_all_nodes(std::span<const Index> nodes) const
-{
-  return faces_where(nodes, [](const ElementType&, int) { return true; });
-}
-
-std::vector<Index> DeckFaces::loaded_by(std::span<const Index> nodes) const
-{
-  return faces_where(nodes,
-                     [](const ElementType& type, int i) {
-                       return type != ElementType{Shape::triangle, 6} || i >= 3;
-                     });
 }
 
 namespace

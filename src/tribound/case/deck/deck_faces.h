@@ -34,6 +34,9 @@ class DeckFaces
   [[nodiscard]] Index find(const mesh::FaceNodes& face) const;
   /// Those all of whose nodes are among the given ones.
   [[nodiscard]] std::vector<Index> with_all_nodes(std::span<const Index> nodes) const;
+  /// The same for many sets, in one pass.
+  [[nodiscard]] std::vector<std::vector<Index>> with_all_nodes_of(
+      std::span<const std::span<const Index>> sets) const;
   /// Those all of whose nodes that carry a part of a uniform load are among the given ones: of a triangle of
   /// 6 nodes the middles alone do.
   [[nodiscard]] std::vector<Index> loaded_by(std::span<const Index> nodes) const;
@@ -51,9 +54,6 @@ class DeckFaces
   [[nodiscard]] std::vector<std::array<Point<3>, 3>> triangles(Index face) const;
 
  private:
-  template <class Counts>
-  [[nodiscard]] std::vector<Index> faces_where(std::span<const Index> nodes, const Counts& counts) const;
-
   const mesh::ImportedMesh& mesh_;
   int dim_;
   Index n_cells_ = 0;

@@ -53,6 +53,31 @@ std::set<Index> WholeBodies::within(std::span<const Index> nodes) const
   return result;
 }
 
+SetsOfNodes::SetsOfNodes(std::size_t n_nodes, std::span<const std::span<const Index>> sets)
+    : begin_(n_nodes + 1, 0)
+{
+  for (const auto& set : sets)
+    for (const Index node : set) ++begin_[node + 1];
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  sets_.resize(begin_.back());
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t s = 0; s < sets.size(); ++s)
+    for (const Index node : sets[s]) sets_[next[node]++] = static_cast<Index>(s);
+}
+
+std::vector<Index> SetsOfNodes::with_all(std::span<const Index> nodes) const
+{
+  std::vector<Index> common(of(nodes[0]).begin(), of(nodes[0]).end());
+  for (const Index node : nodes.subspan(1))
+  {
+    std::vector<Index> both;
+    std::ranges::set_intersection(common, of(node), std::back_inserter(both));
+    common = std::move(both);
+    if (common.empty()) break;
+  }
+  return common;
+}
+
 namespace
 {
 
@@ -102,33 +127,16 @@ class NodeSetFacets
   void find_facets()
   {
     found_.resize(mesh_.node_sets.size());
-    std::vector<std::size_t> begin(mesh_.nodes.size() + 1, 0);
-    for (const NodeSet& set : mesh_.node_sets)
-      for (const Index node : set.nodes) ++begin[node + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Index> sets(begin.back());
-    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    std::vector<char> is_marked(mesh_.nodes.size(), 0);
-    for (std::size_t s = 0; s < mesh_.node_sets.size(); ++s)
-      for (const Index node : mesh_.node_sets[s].nodes)
-      {
-        sets[next[node]++] = static_cast<Index>(s);
-        is_marked[node] = 1;
-      }
-    const auto of_node = [&](Index node)
-    { return std::span(sets).subspan(begin[node], begin[node + 1] - begin[node]); };
-
+    std::vector<std::span<const Index>> nodes_of_sets;
+    for (const NodeSet& set : mesh_.node_sets) nodes_of_sets.emplace_back(set.nodes);
+    const SetsOfNodes sets(mesh_.nodes.size(), nodes_of_sets);
+    std::vector<char> is_marked(mesh_.nodes.size());
+    for (std::size_t n = 0; n < is_marked.size(); ++n) is_marked[n] = sets.has(static_cast<Index>(n)) ? 1 : 0;
     for (const CellFace& face : CellFaces(mesh_.cells, is_marked).outer())
     {
       const FaceNodes nodes = nodes_of(mesh_.cells, face);
-      std::vector<Index> common(of_node(nodes.nodes[0]).begin(), of_node(nodes.nodes[0]).end());
-      for (const Index node : nodes.span().subspan(1))
-      {
-        std::vector<Index> both;
-        std::ranges::set_intersection(common, of_node(node), std::back_inserter(both));
-        common = std::move(both);
-      }
-      for (const Index s : common) append(found_[s], nodes, mesh_.cells[face.block].numbers[face.element]);
+      for (const Index s : sets.with_all(nodes.span()))
+        append(found_[s], nodes, mesh_.cells[face.block].numbers[face.element]);
     }
   }
 

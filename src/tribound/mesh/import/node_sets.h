@@ -32,6 +32,27 @@ class WholeBodies
   std::vector<Index> size_;  ///< of a body, at the node that stands for it
 };
 
+/// Which of the sets a node is in, at a cost that does not grow with the number of sets.
+class SetsOfNodes
+{
+ public:
+  /// Nodes without repetitions in each set.
+  SetsOfNodes(std::size_t n_nodes, std::span<const std::span<const Index>> sets);
+
+  [[nodiscard]] bool has(Index node) const { return begin_[node] < begin_[node + 1]; }
+  /// The sets that have all of these nodes, ascending.
+  [[nodiscard]] std::vector<Index> with_all(std::span<const Index> nodes) const;
+
+ private:
+  [[nodiscard]] std::span<const Index> of(Index node) const
+  {
+    return std::span(sets_).subspan(begin_[node], begin_[node + 1] - begin_[node]);
+  }
+
+  std::vector<std::size_t> begin_;
+  std::vector<Index> sets_{};  ///< of node n from begin_[n], ascending
+};
+
 /// Turns the node sets of a mesh into facet sets: the outer facets of cells all of whose nodes, middles too,
 /// are in the set. Left out, with a note: sets without such a facet, sets that have all nodes of a body, and
 /// sets with the same facets as a facet set or an earlier node set. Throws InputError for a set without
