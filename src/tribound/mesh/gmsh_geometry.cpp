@@ -80,10 +80,14 @@ void set_size(const MeshFile& source, int dim, std::vector<std::string>& notes)
 void fill(const MeshFile& source)
 {
   constexpr double sharp = 40 * std::numbers::pi / 180;
-  if (!read_stl(source.path, {.file = source.path.string()}).is_closed())
-    throw InputError({.file = source.path.string()},
-                     "the surface is not closed: an edge belongs to one triangle only",
+  const Where where{.file = source.path.string()};
+  const TriangulatedSurface surface = read_stl(source.path, where);
+  if (!surface.is_closed())
+    throw InputError(where, "the surface is not closed: an edge belongs to one triangle only",
                      "close its holes in the program that has made it");
+  if (const std::size_t n = surface.n_bodies(); n > 1)
+    throw InputError(where, fmt::format("the surface encloses {} bodies, one outside of the other", n),
+                     "a file for each body; beside the outer surface of a body only its cavities");
   run_gmsh(source.path, "fill the surface", "do triangles cross? Mend the surface",
            [&] { gmsh::fill_surface(sharp); });
 }

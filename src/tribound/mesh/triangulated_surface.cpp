@@ -121,15 +121,50 @@ void TriangulatedSurface::find_neighbours(const Where& where)
   is_closed_ = n_open == 0;
 }
 
+double TriangulatedSurface::six_volumes(std::span<const Triangle> shell) const
+{
+  const Point<3>& apex = vertices_[shell[0][0]];
+  double result = 0;
+  for (const Triangle& t : shell)
+    result += (vertices_[t[0]] - apex).dot((vertices_[t[1]] - apex).cross(vertices_[t[2]] - apex));
+  return result;
+}
+
+std::vector<std::vector<TriangulatedSurface::Triangle>> TriangulatedSurface::shells() const
+{
+  std::vector<std::vector<Triangle>> result;
+  std::vector<char> is_reached(triangles_.size(), 0);
+  for (std::size_t first = 0; first < triangles_.size(); ++first)
+  {
+    if (std::exchange(is_reached[first], 1) != 0) continue;
+    std::vector<Index> reached = {static_cast<Index>(first)};
+    std::vector<Triangle>& shell = result.emplace_back();
+    for (std::size_t k = 0; k < reached.size(); ++k)
+    {
+      shell.push_back(triangles_[reached[k]]);
+      for (const Index next : neighbours_[reached[k]])
+        if (next >= 0 && std::exchange(is_reached[next], 1) == 0) reached.push_back(next);
+    }
+  }
+  return result;
+}
+
+std::size_t TriangulatedSurface::n_bodies() const
+{
+  const std::vector<std::vector<Triangle>> shells = this->shells();
+  const auto largest = std::ranges::max_element(
+      shells, {}, [&](const std::vector<Triangle>& shell) { return std::abs(six_volumes(shell)); });
+  const TriangulatedSurface outer(vertices_, *largest, {});
+  std::size_t result = 1;
+  for (auto shell = shells.begin(); shell != shells.end(); ++shell)
+    if (shell != largest && outer.nearest(vertices_[(*shell)[0][0]]).distance > 0) ++result;
+  return result;
+}
+
 /// Decides by the sign of the volume.
 void TriangulatedSurface::turn_outward()
 {
-  double volume = 0;
-  for (const Triangle& t : triangles_)
-    volume += (vertices_[t[0]] - vertices_[triangles_[0][0]])
-                  .dot((vertices_[t[1]] - vertices_[triangles_[0][0]])
-                           .cross(vertices_[t[2]] - vertices_[triangles_[0][0]]));
-  if (!is_closed_ || volume >= 0) return;
+  if (!is_closed_ || six_volumes(triangles_) >= 0) return;
   for (std::size_t t = 0; t < triangles_.size(); ++t)
   {
     std::swap(triangles_[t][1], triangles_[t][2]);

@@ -31,6 +31,9 @@ class TriangulatedSurface
   [[nodiscard]] std::size_t n_triangles() const { return triangles_.size(); }
   /// Whether every edge belongs to two triangles.
   [[nodiscard]] bool is_closed() const { return is_closed_; }
+  /// The largest of the shells of a closed surface, and those outside of it. The others are its cavities,
+  /// whichever way their normals point.
+  [[nodiscard]] std::size_t n_bodies() const;
 
   struct Nearest
   {
@@ -47,6 +50,10 @@ class TriangulatedSurface
   void find_neighbours(const Where& where);
   void find_normals();
   void turn_outward();
+  /// Triangles connected by edges.
+  [[nodiscard]] std::vector<std::vector<Triangle>> shells() const;
+  /// Six times what they enclose; negative if their normals point into it.
+  [[nodiscard]] double six_volumes(std::span<const Triangle> shell) const;
 
   std::vector<Point<3>> vertices_;
   std::vector<Triangle> triangles_;

@@ -240,6 +240,32 @@ TEST(Cad, SurfacesOfTrianglesAreFilled)
   expect_input_error([&] { (void)survey_of(file); }, {"part.stl: the surface is not closed"});
 }
 
+TEST(Cad, SurfacesOfTrianglesAreOfOneBody)
+{
+  const Directory directory;
+  const mesh::MeshFile file{directory / "parts.stl", {}, {.size = 1}};
+  const auto write_boxes = [&](bool has_cavity)
+  {
+    with_gmsh(
+        [&]
+        {
+          gmsh::model::occ::addBox(0, 0, 0, 3, 3, 3);
+          gmsh::model::occ::addBox(has_cavity ? 1 : 4, 1, 1, 1, 1, 1);
+          std::vector<std::pair<int, int>> cut;
+          std::vector<std::vector<std::pair<int, int>>> map;
+          if (has_cavity) gmsh::model::occ::cut({{3, 1}}, {{3, 2}}, cut, map);
+          gmsh::model::occ::synchronize();
+          gmsh::model::mesh::generate(2);
+          gmsh::write(file.path.string());
+        });
+  };
+  write_boxes(false);
+  expect_input_error([&] { (void)survey_of(file); },
+                     {"parts.stl: the surface encloses 2 bodies", "a file for each body"});
+  write_boxes(true);
+  EXPECT_NEAR(survey_of(file).regions.at(0).measure, 26, 1e-6);
+}
+
 /// A box of two layers with groups on top and below.
 TEST(Cad, MeshesOfOtherProgramsKeepTheirNumbersOrNames)
 {
