@@ -23,7 +23,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 HERE = Path(__file__).resolve().parent
-sys.path.append(str(HERE.parent.parent / "scripts"))
+sys.path.insert(0, str(HERE.parent.parent / "scripts"))  # before a package that has the name of one of the modules
 
 import ccx  # noqa: E402
 import make  # noqa: E402
