@@ -50,10 +50,13 @@ def _03_tetrahedra():
 
 @deck
 def _04_bolted_flange():
-    """A quarter of two plates with a square bolt, tightened by cooling it; then the upper plate is pulled."""
-    side, cross = breaks(0, (4, 1), (8, 2), (12, 1)), breaks(0, (3, 1), (4, 1), (8, 2))
-    low, up = (Body(name, "C3D10", side, side, breaks(z, (z + 6, 1)), keep=lambda x, y, z: max(x, y) > 4) for name, z in (("LOW", -6), ("UP", 0)))
-    bolt = Body("BOLT", "C3D10", cross, cross, breaks(-10, (-6, 1), (6, 3), (10, 1)), keep=lambda x, y, z: abs(z) > 6 or max(x, y) < 3)
+    """A quarter of two plates with a square bolt, tightened by cooling it; then the upper plate is pulled.
+
+    Cells are small at the edges of the contact under the head and at its corner with the shank, where stresses are infinite.
+    """
+    side, cross = breaks(0, (4, 1), (5, 1), (7, 1), (8, 1), (12, 1)), breaks(0, (2, 1), (3, 1), (4, 1), (5, 1), (7, 1), (8, 1))
+    low, up = (Body(name, "C3D10", side, side, breaks(z, (z + 1, 1), (z + 5, 1), (z + 6, 1)), keep=lambda x, y, z: max(x, y) > 4) for name, z in (("LOW", -6), ("UP", 0)))
+    bolt = Body("BOLT", "C3D10", cross, cross, breaks(-10, (-7, 1), (-6, 1), (-5, 1), (5, 2), (6, 1), (7, 1), (10, 1)), keep=lambda x, y, z: abs(z) > 6 or max(x, y) < 3)
     bodies, pairs = (low, up, bolt), [("UP_BASE", "LOW_TOP"), ("HEAD", "SEAT"), ("FOOT", "SOLE")]
     ring = lambda height: lambda x, y, z: abs(z - height) < 1e-9 and max(x, y) < 8 + 1e-9
     under = lambda height: lambda x, y, z: abs(z - height) < 1e-9 and max(x, y) > 3 - 1e-9
