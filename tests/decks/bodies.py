@@ -40,7 +40,10 @@ def breaks(*parts):
 class Body:
     """`kind` is the type of the deck, such as C3D20R or CPE4; `keep` takes the centre of a brick."""
 
+    refinement = 1  # how many cells along each axis become of one
+
     def __init__(self, name, kind, *axes, keep=lambda *centre: True, where=lambda *point: point):
+        axes = [breaks(axis[0], *((end, self.refinement) for end in axis[1:])) for axis in axes]
         digits = kind[3:].rstrip("RI")
         self.name, self.kind, self.dim = name, kind, len(axes)
         self.shape = SHAPES[self.dim - 2][digits]

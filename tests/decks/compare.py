@@ -4,6 +4,7 @@
     compare.py PROGRAM FOLDER import [NAME ...]     imports and checks every deck, in seconds
     compare.py PROGRAM FOLDER ccx [NAME ...]        compares with CalculiX; exit code 77 where ccx is not installed
     compare.py PROGRAM FOLDER write                 the same, and writes the table of docs/decks.md
+    compare.py PROGRAM FOLDER refined               compares some on finer meshes, and writes that table there
 
 CalculiX presses bodies apart by springs; K, the stiffness of the deck, is multiplied by 1, 10 and 100. Forces of
 supports and contacts must agree to a percent with 100 K, displacements to what discretisation leaves; and CalculiX must
@@ -39,6 +40,7 @@ ACCEPTED = {"15_prisms": ["NLGEOM"]}
 PERIOD = 1.0  # of every step
 COLUMNS = ["deck|", "elements|", "cells", "steps", "forces, deviation", *(f"displacements at {k}, deviation" for k in ("K", "10 K", "100 K")),
            "ccx, seconds", "Tribound, seconds"]
+REFINED = {"11_instances": (1, 2, 3), "16_gravity": (1, 2, 3), "20_prepomax": (1, 2)}  # cells in place of one, along each axis
 SKIPPED = 77
 
 
@@ -143,7 +145,7 @@ def displacements(run, solution):
 
 
 def compare(program, folder, name, paths):
-    """The row of the table, and what is wrong."""
+    """The row of the table, what is wrong, and the deviation of displacements at 100 K."""
     deck, ccx_deck = paths
     case = imported(program, deck, folder / "cases")
     run = Run(program, case, folder / "runs" / name)
@@ -160,7 +162,7 @@ def compare(program, folder, name, paths):
     kinds = sorted(element_types(folder, ccx_deck))
     cells = run.certificate["mesh"]["cells"]
     percents = [f"{100 * share:.2g} %" for share in (deviation, *shares)]
-    return [name, " ".join(kinds), cells, len(run.balances), *percents, f"{solution.seconds:.1f}", f"{run.seconds:.1f}"], problems
+    return [name, " ".join(kinds), cells, len(run.balances), *percents, f"{solution.seconds:.1f}", f"{run.seconds:.1f}"], problems, shares[-1]
 
 
 def element_types(folder, deck):
@@ -168,12 +170,26 @@ def element_types(folder, deck):
     return set(re.findall(r"\n\*ELEMENT, TYPE=(\w+)", text))
 
 
-def main(program, folder, mode, *names):
-    folder = Path(folder)
+def refined(program, folder):
+    """On finer meshes, what is discretisation must become smaller. Returns the rows of the table, and what is wrong."""
+    rows, problems = [], []
+    for name, refinements in REFINED.items():
+        shares = []
+        for n in refinements:
+            paths = make.write(folder / f"refined_{n}", [name], n)
+            row, wrong, share = compare(program, folder / f"refined_{n}", name, paths[name])
+            rows.append([name, "h" if n == 1 else f"h / {n}", row[2], *row[4:]])
+            print("  ".join(map(str, rows[-1])), flush=True)
+            problems += wrong
+            shares.append(share)
+        if shares != sorted(shares, reverse=True):
+            problems.append(f"{name}: displacements at 100 K deviate by {shares} on finer and finer meshes")
+    return rows, problems
+
+
+def all_decks(program, folder, mode, names):
+    """The rows of the table, and what is wrong."""
     paths = make.write(folder, names)
-    if mode != "import" and ccx.PROGRAM is None:
-        print("ccx is not installed: scripts/ccx installs it")
-        return SKIPPED
     rows, problems = [], []
     for name, decks in paths.items():
         try:
@@ -181,13 +197,25 @@ def main(program, folder, mode, *names):
                 imported(program, decks[0], folder / "cases")
                 print(f"{name}: ok")
                 continue
-            row, wrong = compare(program, folder, name, decks)
+            row, wrong, _ = compare(program, folder, name, decks)
             rows.append(row)
             problems += wrong
             print("  ".join(map(str, row)), flush=True)
         except (Failure, RuntimeError) as failure:
             problems.append(f"{name}: {failure}")
             print(problems[-1], flush=True)
+    return rows, problems
+
+
+def main(program, folder, mode, *names):
+    if mode != "import" and ccx.PROGRAM is None:
+        print("ccx is not installed: scripts/ccx installs it")
+        return SKIPPED
+    if mode == "refined":
+        rows, problems = refined(program, Path(folder))
+        update("docs/decks.md", {"refined": table(["deck|", "edges|", "cells", *COLUMNS[4:]], rows)})
+    else:
+        rows, problems = all_decks(program, Path(folder), mode, names)
     if mode == "write":
         update("docs/decks.md", {"decks": table(COLUMNS, rows)})
     print("\n".join(problems))
@@ -195,6 +223,6 @@ def main(program, folder, mode, *names):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 4 or sys.argv[3] not in ("import", "ccx", "write"):
+    if len(sys.argv) < 4 or sys.argv[3] not in ("import", "ccx", "write", "refined"):
         raise SystemExit(__doc__)
     raise SystemExit(main(*sys.argv[1:]))

@@ -292,8 +292,9 @@ def _20_prepomax():
     return (Path(__file__).parent / "prepomax.txt").read_text().format(mesh="\n".join(mesh), pressure="\n".join(pressure)).splitlines()
 
 
-def write(folder, names=()):
+def write(folder, names=(), refinement=1):
     """The decks, and the paths of those for Tribound and for CalculiX, by name."""
+    Body.refinement = refinement
     folder.mkdir(parents=True, exist_ok=True)
     paths = {}
     for name, make in DECKS.items():
