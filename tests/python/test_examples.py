@@ -1,13 +1,15 @@
-"""Runs the scripts of examples/python, which check their own numbers."""
+"""Runs the scripts of examples/python, which check their own numbers, and the example of the guide."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples/python"
+SOURCE = Path(__file__).resolve().parents[2]
+EXAMPLES = SOURCE / "examples/python"
 OWN_LOOP = os.environ.get("TRIBOUND_OWN_LOOP")  # examples/cpp/own_loop.cpp, built
 
 
@@ -40,6 +42,14 @@ class Examples(unittest.TestCase):
         self.assertIn("the friction force has settled", printed)
         if OWN_LOOP:
             self.assertEqual(printed, subprocess.run([OWN_LOOP], capture_output=True, text=True, check=True).stdout)
+
+    def test_guide(self) -> None:
+        code = re.findall(r"^```python\n(.*?)^```", (SOURCE / "docs/python.md").read_text(), re.S | re.M)[0]
+        *lines, last = code.splitlines()
+        values, comment = last.split("#")
+        found: dict[str, object] = {}
+        exec("\n".join([*lines, f"found = {values}"]), found)
+        self.assertTrue(str(found["found"]).startswith(comment.strip().removesuffix("...)")), found["found"])
 
     def test_every_script_is_run(self) -> None:
         tests = {name.removeprefix("test_") for name in dir(self) if name.startswith("test_")}
