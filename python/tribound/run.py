@@ -1,5 +1,6 @@
 """Runs, checks and verifications: the commands of the program."""
 
+import inspect
 import json
 import os
 import shutil
@@ -7,7 +8,7 @@ import tempfile
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,8 @@ from tribound.result import Result, Step, Study, Verification
 from tribound.session import Work
 
 AnyCase = Case | Mapping[str, Any] | str
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class Place:
@@ -72,7 +75,6 @@ class Hooks:
     def __init__(
         self,
         work: "Work[Result]",
-        shows: bool,
         on_level: Callable[[Level], Any] | None,
         on_step: Callable[[Step], Any] | None,
         mark: Callable[[Level], ArrayLike] | None,
@@ -81,7 +83,6 @@ class Hooks:
     ) -> None:
         self.levels: list[Level] = []
         self._work = work
-        self._shows = shows
         self._on_level = on_level
         self._keep_levels = keep_levels
         self._on_step = on_step
@@ -98,8 +99,7 @@ class Hooks:
         self.levels.append(level)
         if self._on_level is not None:
             self._work.call(self._on_level, level)
-        if self._shows:
-            self._work.show(level)
+        self._work.show(level)
 
     def step(self, number: int, residual: float, relative: float | None, seconds: float) -> None:
         """Called after every step of Newton's method."""
@@ -127,9 +127,8 @@ class Hooks:
 
 
 def _work(
-    case: AnyCase | None,
-    mesh: Mesh | None,
-    shows: bool,
+    case: AnyCase | None = None,
+    mesh: Mesh | None = None,
     *,
     set: Mapping[str, Any] | None = None,
     directory: str | os.PathLike[str] | None = None,
@@ -155,7 +154,7 @@ def _work(
         given = Input(case, mesh, set, place)
 
     def command(work: "Work[Result]") -> Result:
-        hooks = Hooks(work, shows, on_level, on_step, mark, stop, keep_levels)
+        hooks = Hooks(work, on_level, on_step, mark, stop, keep_levels)
         if given is not None:
             _tribound.run(given.document, given.overrides, not verbose, hooks)
         else:
@@ -165,7 +164,20 @@ def _work(
     return Work(command, verbose)
 
 
-def run(case: AnyCase | None, mesh: Mesh | None = None, **options: Any) -> Result:
+def _options_of(work: Callable[P, Any]) -> Callable[[Callable[..., R]], Callable[P, R]]:
+    """Gives a function the arguments of another one, for callers, editors and mypy."""
+
+    def give(function: Callable[..., R]) -> Callable[P, R]:
+        returns = inspect.signature(function).return_annotation
+        signature = inspect.signature(work).replace(return_annotation=returns)
+        setattr(function, "__signature__", signature)
+        return function
+
+    return give
+
+
+@_options_of(_work)
+def run(*arguments: Any, **options: Any) -> Result:
     """Solves a case, as `tribound run`.
 
     mesh: in place of that of the case. set: keys to override. directory: where the files of the run go; by
@@ -177,13 +189,14 @@ def run(case: AnyCase | None, mesh: Mesh | None = None, **options: Any) -> Resul
 
     Not to converge, or not to be certified, is no exception: see result.status.
     """
-    return _work(case, mesh, False, **options).result()
+    return _work(*arguments, **options).result()
 
 
-def levels(case: AnyCase | None, mesh: Mesh | None = None, **options: Any) -> Iterator[Level]:
+@_options_of(_work)
+def levels(*arguments: Any, **options: Any) -> Iterator[Level]:
     """The levels, or load steps, of a run as they come, with the options of run(). To leave the loop ends the
     run. The last level comes a second time where it has changed since."""
-    return _work(case, mesh, True, **options).values()
+    return _work(*arguments, **options).values()
 
 
 def check(case: AnyCase, mesh: Mesh | None = None, *, set: Mapping[str, Any] | None = None) -> dict[str, Any]:

@@ -3,12 +3,14 @@ their own, which names all that is there."""
 
 import ast
 import importlib.util
+import inspect
 import os
 import subprocess
 import sys
 import unittest
 from pathlib import Path
 
+import tribound
 from tribound import _tribound
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -42,6 +44,12 @@ class Types(unittest.TestCase):
         self.assertEqual(classes["Document"], public(_tribound.Document))
         self.assertEqual(classes["_Level"], public(_tribound.Level2))
         self.assertEqual(classes["_Level"], public(_tribound.Level3))
+
+    def test_arguments_are_shown(self) -> None:
+        for command in (tribound.run, tribound.levels):
+            names = list(inspect.signature(command).parameters)
+            self.assertEqual(names[:4], ["case", "mesh", "set", "directory"])
+            self.assertIn("keep_levels", names)
 
 
 if __name__ == "__main__":
