@@ -6,6 +6,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <utility>
 
 #include "app/host.h"
 #include "python/_tribound/commands.h"
@@ -29,11 +30,11 @@ void raise(const char* name, const py::object& arguments)
   PyErr_SetObject(type.ptr(), type(*arguments).ptr());
 }
 
-void translate(const std::exception_ptr failure)
+void translate(std::exception_ptr failure)
 {
   try
   {
-    if (failure) std::rethrow_exception(failure);
+    if (failure) std::rethrow_exception(std::move(failure));
   }
   catch (const InputError& error)
   {
