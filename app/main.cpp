@@ -28,6 +28,7 @@ using namespace tribound::app;
 
 struct Arguments : SweepRequest
 {
+  JudgeRequest judge;
   int refinements = 2;                ///< of verify
   bool json = false;                  ///< of check
   std::string start = "block";        ///< of init: the case to start from
@@ -95,6 +96,32 @@ void describe_sweep(CLI::App& sweep, Arguments& arguments)
   add_set_option(sweep, arguments);
 }
 
+void describe_judge(CLI::App& command, Arguments& arguments)
+{
+  JudgeRequest& request = arguments.judge;
+  command.group(case_commands);
+  add_case_arguments(command, arguments)->required();
+  command
+      .add_option("--solution", request.solution,
+                  "A file with their displacement at the nodes of the mesh of the case")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--field", request.field, "The name of their displacement in the file")
+      ->type_name("NAME");
+  command.add_option("--stress", request.stress, "The name of their stress in the file")->type_name("NAME");
+  command.add_option("--step", request.step, "The step of the file; default: the last")->type_name("N");
+  command.add_option("--load-step", request.load_step, "The load step of the case; default: the last")
+      ->type_name("N");
+  command
+      .add_option("--number", request.numbers,
+                  "What they have computed for a quantity of the case; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--accept", request.accept, "The largest relative error that is acceptable, such as 0.05")
+      ->check(CLI::PositiveNumber);
+}
+
 void describe_mesh(CLI::App& command, MeshRequest& request)
 {
   mesh::ImportOptions& options = request.input.options;
@@ -146,6 +173,8 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   CLI::App* sweep = app.add_subcommand("sweep", "Solve a case with other values of some of its keys");
   sweep->group(case_commands);
   describe_sweep(*sweep, arguments);
+  describe_judge(*app.add_subcommand("judge", "Bound the error of another program's solution of the case"),
+                 arguments);
   init->add_option("name", arguments.start,
                    fmt::format("The case to start from: {}", fmt::join(template_names(), ", ")))
       ->capture_default_str();
@@ -186,7 +215,8 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "run") return run(arguments, arguments.restart, {});
   if (n_processes() > 1)
   {
-    const bool needs_one = command == "verify" || command == "study" || command == "sweep";
+    const bool needs_one =
+        command == "verify" || command == "study" || command == "judge" || command == "sweep";
     if (!is_first_process() && command == "info") info(false);
     if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
     if (needs_one)
@@ -196,6 +226,11 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   }
   if (command == "verify") return verify(arguments, arguments.refinements);
   if (command == "study") return study(arguments);
+  if (command == "judge")
+  {
+    static_cast<CaseRequest&>(arguments.judge) = arguments;
+    return judge(arguments.judge);
+  }
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
   if (command == "mesh") write_mesh(arguments.mesh);

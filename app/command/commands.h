@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,10 +26,11 @@ struct RunHooks;
 /// Exit codes, a contract with scripts.
 enum class ExitCode
 {
-  success = 0,        ///< certified: the identities hold, the tolerance is reached
-  bad_input = 1,      ///< InputError
-  failed = 2,         ///< no convergence, singular matrix, identity violated, a result not written
-  budget_used_up = 3  ///< the certificate is valid, the tolerance is not reached
+  success = 0,         ///< certified: the identities hold, the tolerance is reached
+  bad_input = 1,       ///< InputError
+  failed = 2,          ///< no convergence, singular matrix, identity violated, a result not written
+  budget_used_up = 3,  ///< the certificate is valid, the tolerance is not reached
+  rejected = 4         ///< of judge: the error of their solution is above the threshold
 };
 
 /// The exit code of a failure, and its message.
@@ -107,6 +109,26 @@ struct SweepRequest : CaseRequest
 /// output.directory. Throws InputError for invalid values before anything is solved. Success: all certified;
 /// budget_used_up: some not, or interrupted; failed: some failed; bad_input: some were rejected.
 [[nodiscard]] ExitCode sweep(const SweepRequest& request);
+
+/// What `judge` compares with the case.
+struct JudgeRequest : CaseRequest
+{
+  std::string solution{};              ///< a file of another program
+  std::string field{};                 ///< its displacement; empty: a usual name
+  std::string stress{};                ///< its stress; empty: a usual name, if there is one
+  std::optional<int> step{};           ///< of the file; absent: the last
+  std::optional<int> load_step{};      ///< of the case; absent: the last
+  std::vector<std::string> numbers{};  ///< NAME=VALUE of quantities that they have computed
+  std::optional<double> accept{};      ///< the largest relative error
+};
+
+/// `tribound judge`: bounds the error of the solution in a file, which is on the mesh of the case, from both
+/// sides: solves the case on meshes that follow the error in the energy norm, until its own bound is small
+/// beside the distance of theirs (judge.sharpness) or a limit of [adapt] is met. Prints the judgement and
+/// writes it, with the run, to `judge` in output.directory. Success: judged, or the error is at most
+/// `accept`; budget_used_up: the interval is wider than asked for, or not narrow enough to decide; rejected:
+/// it is larger. Throws InputError for a solution on another mesh.
+[[nodiscard]] ExitCode judge(const JudgeRequest& request);
 
 /// `tribound mesh`: the mesh of a file, with the options of [mesh], for Gmsh and for other cases.
 struct MeshRequest

@@ -93,6 +93,12 @@ adapt::StepObserver both(const Progress& first, const adapt::StepObserver& secon
   };
 }
 
+Printed printed(const Progress& progress, const RunHooks& hooks)
+{
+  if (hooks.is_part) return progress.quiet() ? Printed::nothing : Printed::levels;
+  return progress.quiet() ? Printed::verdict : Printed::everything;
+}
+
 /// The strategy of the case, with the marking and the stopping rule of the hooks.
 template <int dim>
 adapt::Strategy<dim> make_strategy(const case_file::Config& config, const std::atomic<bool>& stop,
@@ -211,8 +217,7 @@ ExitCode run(const case_file::Config& config, mesh::Mesh<dim> mesh, const Progre
   const std::vector<bool> slides = slides_as_a_whole<dim>(problem, mesh, whole.get());
   const auto report_from = [&](const adapt::Discretisation<dim>& first, const auto& work)
   {
-    RunReport<dim> report(config, problem, first, slides, begin,
-                          progress.quiet() ? Printed::verdict : Printed::everything, restart);
+    RunReport<dim> report(config, problem, first, slides, begin, printed(progress, hooks), restart);
     report.watch(owned_problem, hooks.of<dim>().level);
     try
     {

@@ -52,11 +52,20 @@ struct LoopHooks
 struct RunHooks
 {
   adapt::StepObserver step{};
+  bool is_part = false;  ///< of a larger command, which says how it ends
   LoopHooks<2> plane{};
   LoopHooks<3> space{};
 
   template <int dim>
   [[nodiscard]] const LoopHooks<dim>& of() const
+  {
+    if constexpr (dim == 2)
+      return plane;
+    else
+      return space;
+  }
+  template <int dim>
+  [[nodiscard]] LoopHooks<dim>& of()
   {
     if constexpr (dim == 2)
       return plane;

@@ -141,6 +141,12 @@ struct StudyConfig
   bool figures = true;            ///< whether to draw them
 };
 
+/// `tribound judge`.
+struct JudgeConfig
+{
+  double sharpness = 0.1;  ///< of the bound over the distance of what is judged
+};
+
 /// The levels whose fields a run writes.
 enum class FieldLevels
 {
@@ -192,6 +198,7 @@ struct Config
   adapt::Method method;
   adapt::AdaptOptions adapt;
   StudyConfig study;
+  JudgeConfig judge;
   OutputConfig output;
   io::EffectiveCase effective;
 };

@@ -136,6 +136,15 @@ const Options<StudyConfig>& study_options()
   return options;
 }
 
+const Options<JudgeConfig>& judge_options()
+{
+  static const Options<JudgeConfig> options(
+      "judge",
+      {option<&JudgeConfig::sharpness>(
+          "sharpness", number_in(positive, "the bound of ours over the distance of theirs, such as 0.1"))});
+  return options;
+}
+
 const Options<OutputConfig>& output_options()
 {
   using O = OutputConfig;
@@ -178,6 +187,7 @@ std::vector<Key> method_keys()
           {"certify", keys_of(certify_options().table())},
           {"solver", keys_of(solver_options().table())},
           {"study", keys_of(study_options().table())},
+          {"judge", keys_of(judge_options().table())},
           {"output", keys_of(output_options().table())}};
 }
 
@@ -197,6 +207,7 @@ void read_method(const TableReader& root, Config& config)
   if (const Node* node = root.find("study"))
     check_reference_degree(TableReader(*node, study_options().table()), config.method.degree);
   read(study_options(), "study", config.study);
+  read(judge_options(), "judge", config.judge);
   read(output_options(), "output", config.output);
   if (const Node* node = root.find("output"))
     if (const Entry* point = find(std::get<Node::Table>(node->value), "moment_about"))

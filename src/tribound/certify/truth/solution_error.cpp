@@ -54,6 +54,33 @@ class CellGradients
   std::vector<Tensor<dim>> values_;
 };
 
+/// Two cells in one place, and the points of a rule on the smaller one.
+template <int dim>
+struct Overlap
+{
+  Index cell;
+  Index reference_cell;
+  const mesh::CellMap<dim>& own;
+  const mesh::CellMap<dim>& reference;
+  const mesh::CellMap<dim>& smaller;
+  std::span<const Point<dim>> points;
+};
+
+template <int dim, class Use>
+void for_each_overlap(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& reference_mesh,
+                      const fem::Quadrature<dim>& rule, const Use& use)
+{
+  std::vector<Point<dim>> points(rule.size());
+  for (const auto& [cell, reference_cell] : mesh::overlay(mesh, reference_mesh))
+  {
+    const mesh::CellMap<dim> own = mesh::cell_map(mesh, cell);
+    const mesh::CellMap<dim> reference = mesh::cell_map(reference_mesh, reference_cell);
+    const mesh::CellMap<dim>& smaller = own.det < reference.det ? own : reference;
+    std::ranges::transform(rule.points, points.begin(), smaller);
+    use(Overlap<dim>{cell, reference_cell, own, reference, smaller, points});
+  }
+}
+
 /// Replaces squares by their roots and returns the root of their sum.
 double take_roots(std::vector<double>& squares)
 {
@@ -80,27 +107,73 @@ LocalError solution_error(const problem::Problem<dim>& problem, const fem::Lagra
   LocalError error;
   error.energy.resize(space.mesh().n_cells(), 0.0);
   error.stress.resize(space.mesh().n_cells(), 0.0);
-  std::vector<Point<dim>> points(rule.size());
-  for (const auto& [cell, reference_cell] : mesh::overlay(space.mesh(), reference_space.mesh()))
-  {
-    const mesh::CellMap<dim> own = mesh::cell_map(space.mesh(), cell);
-    const mesh::CellMap<dim> reference = mesh::cell_map(reference_space.mesh(), reference_cell);
-    const mesh::CellMap<dim>& smaller = own.det < reference.det ? own : reference;
-    std::ranges::transform(rule.points, points.begin(), smaller);
-    const std::span<const Tensor<dim>> values = gradients.at(cell, own, smaller, points);
-    const std::span<const Tensor<dim>> expected =
-        reference_gradients.at(reference_cell, reference, smaller, points);
-    const problem::Material& material = problem.material(space.mesh().region(cell));
-    for (int q = 0; q < rule.size(); ++q)
-    {
-      const Tensor<dim> difference = values[q] - expected[q];
-      const Tensor<dim> stress = contact::sigma<dim>(material, difference);
-      error.energy[cell] += rule.weights[q] * smaller.det * stress.cwiseProduct(difference).sum();
-      error.stress[cell] += rule.weights[q] * smaller.det * stress.squaredNorm();
-    }
-  }
+  for_each_overlap<dim>(
+      space.mesh(), reference_space.mesh(), rule,
+      [&](const Overlap<dim>& at)
+      {
+        const std::span<const Tensor<dim>> values = gradients.at(at.cell, at.own, at.smaller, at.points);
+        const std::span<const Tensor<dim>> expected =
+            reference_gradients.at(at.reference_cell, at.reference, at.smaller, at.points);
+        const problem::Material& material = problem.material(space.mesh().region(at.cell));
+        for (int q = 0; q < rule.size(); ++q)
+        {
+          const double weight = rule.weights[q] * at.smaller.det;
+          const Tensor<dim> difference = values[q] - expected[q];
+          const Tensor<dim> stress = contact::sigma<dim>(material, difference);
+          error.energy[at.cell] += weight * stress.cwiseProduct(difference).sum();
+          error.stress[at.cell] += weight * stress.squaredNorm();
+          const Tensor<dim> own = contact::sigma<dim>(material, values[q]);
+          error.own_energy += weight * own.cwiseProduct(values[q]).sum();
+          error.product += weight * own.cwiseProduct(expected[q]).sum();
+          error.reference_energy +=
+              weight * contact::sigma<dim>(material, expected[q]).cwiseProduct(expected[q]).sum();
+        }
+      });
   error.global.energy = take_roots(error.energy);
   error.global.stress = take_roots(error.stress);
+  return error;
+}
+
+template <int dim>
+std::vector<double> stress_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                 std::span<const Tensor<dim>> s,
+                                 const fem::LagrangeSpace<dim>& reference_space,
+                                 std::span<const double> u_ref)
+{
+  const bool has_initial = std::ranges::any_of(
+      problem.regions(), [](const problem::Region<dim>& region) { return region.has_initial_stress(); });
+  const int degree = std::max(space.degree(), reference_space.degree());
+  const fem::Quadrature<dim> rule = fem::quadrature<dim>(has_initial ? 2 * degree + 5 : 2 * degree);
+  CellGradients<dim> reference_gradients(reference_space, u_ref, rule);
+  std::vector<double> error(space.mesh().n_cells(), 0.0);
+  const auto n_nodes = static_cast<std::size_t>(space.basis().n_nodes());
+  std::vector<Point<dim>> in_cell(rule.size());
+  for_each_overlap<dim>(
+      space.mesh(), reference_space.mesh(), rule,
+      [&](const Overlap<dim>& at)
+      {
+        const std::span<const Tensor<dim>> expected =
+            reference_gradients.at(at.reference_cell, at.reference, at.smaller, at.points);
+        std::ranges::transform(at.points, in_cell.begin(),
+                               [&](const Point<dim>& x) { return fem::reference_point(at.own, x); });
+        const fem::Tabulation<dim> table = space.basis().tabulate(in_cell);
+        const int region = space.mesh().region(at.cell);
+        const problem::Material& material = problem.material(region);
+        const bool is_loaded = problem.regions()[region].has_initial_stress();
+        for (int q = 0; q < rule.size(); ++q)
+        {
+          Tensor<dim> difference = -contact::sigma<dim>(material, expected[q]);
+          if (is_loaded) difference -= problem.initial_stress(region, at.points[q]);
+          for (std::size_t i = 0; i < n_nodes; ++i)
+            difference += table.values_at(q)[i] * s[n_nodes * at.cell + i];
+          // C^-1 s = (s - lambda / (2 mu + d lambda) tr s I) / (2 mu)
+          const double trace = difference.trace();
+          const double share = material.lambda / (2 * material.mu + dim * material.lambda);
+          error[at.cell] += rule.weights[q] * at.smaller.det *
+                            (difference.squaredNorm() - share * trace * trace) / (2 * material.mu);
+        }
+      });
+  (void)take_roots(error);
   return error;
 }
 
@@ -110,5 +183,12 @@ template LocalError solution_error(const problem::Problem<2>&, const fem::Lagran
 template LocalError solution_error(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                    std::span<const double>, const fem::LagrangeSpace<3>&,
                                    std::span<const double>);
+
+template std::vector<double> stress_error(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                          std::span<const Tensor<2>>, const fem::LagrangeSpace<2>&,
+                                          std::span<const double>);
+template std::vector<double> stress_error(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                          std::span<const Tensor<3>>, const fem::LagrangeSpace<3>&,
+                                          std::span<const double>);
 
 }  // namespace tribound::certify

@@ -18,8 +18,11 @@ namespace tribound::certify
 struct LocalError
 {
   SolutionError global;
-  std::vector<double> energy;  ///< per cell: (sigma(e), eps(e))_T^{1/2}, e = u - u_ref
-  std::vector<double> stress;  ///< per cell: ||sigma(e)||_T
+  std::vector<double> energy;   ///< per cell: (sigma(e), eps(e))_T^{1/2}, e = u - u_ref
+  std::vector<double> stress;   ///< per cell: ||sigma(e)||_T
+  double own_energy = 0;        ///< a(u, u)
+  double product = 0;           ///< a(u, u_ref)
+  double reference_energy = 0;  ///< a(u_ref, u_ref)
 };
 
 /// Integrated exactly over the common refinement of the two meshes, which bisect() makes from one mesh.
@@ -29,5 +32,15 @@ template <int dim>
                                         const fem::LagrangeSpace<dim>& space, std::span<const double> u,
                                         const fem::LagrangeSpace<dim>& reference_space,
                                         std::span<const double> u_ref);
+
+/// Per cell of `space`: ||s - sigma(u_ref)||_{C^-1,T}, with the initial stress in sigma; s is in P^p on each
+/// cell, with the values [cell n_nodes + node] at the nodes of `space`. Integrated as above; an initial
+/// stress as by a rule of degree 2p + 5.
+template <int dim>
+[[nodiscard]] std::vector<double> stress_error(const problem::Problem<dim>& problem,
+                                               const fem::LagrangeSpace<dim>& space,
+                                               std::span<const Tensor<dim>> s,
+                                               const fem::LagrangeSpace<dim>& reference_space,
+                                               std::span<const double> u_ref);
 
 }  // namespace tribound::certify

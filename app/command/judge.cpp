@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/command/run.h"
+#include "app/command/with_case.h"
+#include "app/console/console.h"
+#include "app/console/text.h"
+#include "app/result/judgement.h"
+#include "tribound/adapt/error_bars.h"
+#include "tribound/algebra/petsc.h"
+#include "tribound/case/quantity_reader.h"
+#include "tribound/case/resolve.h"
+#include "tribound/certify/energy/energy_bound.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/contact/nitsche/penalty.h"
+#include "tribound/io/fields/vtu.h"
+#include "tribound/io/file/atomic_file.h"
+#include "tribound/io/record/error_bars.h"
+#include "tribound/mesh/bisect.h"
+#include "tribound/mesh/import/imported_solution.h"
+
+namespace tribound::app
+{
+
+namespace
+{
+
+/// A number of theirs that the user gives: NAME=VALUE.
+std::pair<std::string, double> parse_number(const std::string& text)
+{
+  const std::size_t sign = text.rfind('=');
+  double value = 0;
+  const char* end = text.data() + text.size();
+  if (sign != std::string::npos)
+    if (const auto [stop, error] = std::from_chars(text.data() + sign + 1, end, value);
+        error == std::errc{} && stop == end && std::isfinite(value))
+      return {text.substr(0, sign), value};
+  throw InputError({.file = "--number " + text}, "is no number of a quantity",
+                   "--number NAME=VALUE with the name of a [[quantity]] of the case");
+}
+
+/// Kinds that follow from the displacement alone.
+bool follows_from_displacement(problem::QuantityKind kind)
+{
+  using K = problem::QuantityKind;
+  return kind == K::energy || kind == K::load_work || kind == K::mean_displacement || kind == K::spring_force;
+}
+
+/// The case as it is solved to judge: meshes follow the energy error, and only sharpness and limits end it.
+case_file::Config judging_config(const case_file::Config& config)
+{
+  case_file::Config judging = config;
+  judging.output.directory /= "judge";
+  if (judging.adapt.bars.levels == adapt::EnergyLevels::off || !config.history)
+    judging.adapt.bars.levels = adapt::EnergyLevels::every;
+  if (config.history) return judging;  // which refines for all of its steps, to adapt.tolerance
+  judging.adapt.measure = adapt::ErrorMeasure::energy;
+  judging.adapt.tolerance = 0;
+  return judging;
+}
+
+/// What the run that judges calls.
+template <int dim>
+class Judge
+{
+ public:
+  Judge(const JudgeRequest& request, const case_file::Config& config, mesh::Mesh<dim> mesh)
+      : request_(request),
+        mesh_(std::move(mesh)),
+        problem_(case_file::resolve(config, mesh_)),
+        quantities_(case_file::resolve_quantities<dim>(config, problem_, mesh_.boundary_names()))
+  {
+    record_.facts = case_file::case_facts(config, dim);
+    record_.sharpness = config.judge.sharpness;
+    record_.accept = request.accept;
+    read();
+    measure(config);
+  }
+
+  /// The level, or the load step, against theirs.
+  void operator()(const app::KeptLevel<dim>& level)
+  {
+    if (level.t && request_.load_step && *request_.load_step != level.number) return;
+    if (level.t) record_.load_step = level.number;
+    record_.cells = level.discrete->mesh.n_cells();
+    const std::optional<certify::EnergyBound>& energy = level.level.energy;
+    record_.judgement.reset();
+    record_.reason = energy ? energy->reason : "certify.energy is off";
+    if (energy) take_intervals(*energy);
+    if (!record_.reason.empty()) return;
+    record_.target = io::words_of(energy->target);
+    record_.judgement =
+        certify::judge<dim>(problem_, *space_, theirs_, level.discrete->space, level.level.u, energy->bound);
+  }
+
+  [[nodiscard]] JudgementRecord& record() { return record_; }
+
+  /// judgement.json, judged_cells.csv, and their displacement with the distances as judged.vtu.
+  void write(const std::filesystem::path& directory) const
+  {
+    io::write_file(directory / "judgement.json", judgement_json(record_));
+    if (!record_.judgement) return;
+    const certify::Judgement& judgement = *record_.judgement;
+    io::write_file(directory / "judged_cells.csv", judged_cells_csv<dim>(mesh_, judgement.displacement));
+    std::vector<io::CellField> fields = {{"distance", judgement.displacement.cells}};
+    if (judgement.stress) fields.push_back({"stress_distance", judgement.stress->cells});
+    io::write_level_vtu<dim>({.own = directory / "judged.vtu"}, {}, problem_, *space_, theirs_.u, fields);
+  }
+
+ private:
+  void read()
+  {
+    const mesh::ImportedSolution solution =
+        mesh::read_solution(request_.solution, {request_.field, request_.stress, request_.step});
+    for (const std::string& text : solution.notes)
+      if (!request_.quiet) note(text);
+    theirs_ = certify::foreign_solution<dim>(solution, mesh_);
+    space_.emplace(mesh_, theirs_.degree);
+    record_.solution = request_.solution;
+    record_.description = solution.description;
+    record_.read_as = theirs_.read_as;
+    record_.node_distance = theirs_.node_distance;
+    record_.curved_distance = theirs_.curved_distance;
+    record_.their_cells = mesh_.n_cells();
+  }
+
+  /// Their numbers, and how far their bodies penetrate.
+  void measure(const case_file::Config& config)
+  {
+    const contact::NitscheForm<dim> form(problem_, *space_, contact::default_gamma0(theirs_.degree));
+    const certify::EnergyBound values =
+        certify::no_energy_bound<dim>(form, theirs_.u, quantities_, "not yet judged");
+    for (std::size_t i = 0; i < quantities_.size(); ++i)
+    {
+      JudgedNumber& number = record_.numbers.emplace_back();
+      number.interval.name = values.quantities[i].name;
+      number.interval.reason = "not yet judged";
+      if (follows_from_displacement(quantities_[i].kind)) number.theirs = values.quantities[i].value;
+    }
+    for (const std::string& text : request_.numbers)
+    {
+      const auto [name, value] = parse_number(text);
+      const auto number =
+          std::ranges::find(record_.numbers, name, [](const JudgedNumber& n) { return n.interval.name; });
+      if (number == record_.numbers.end())
+        throw InputError({.file = "--number " + text},
+                         fmt::format("the case has no [[quantity]] \"{}\"", name),
+                         "the name of one of its quantities");
+      number->theirs = value;
+    }
+    if (config.history) return;  // gaps and slips of a path are not theirs
+    for (std::size_t k = 0; k < form.segments().size(); ++k)
+      for (const contact::ContactState<dim>& state : form.contact_states(theirs_.u, k))
+      {
+        if (record_.penetration && -state.gap <= *record_.penetration) continue;
+        record_.penetration = std::max(0.0, -state.gap);
+        record_.penetrated = problem_.boundary(form.segments()[k].slave.facet.tag).name;
+      }
+  }
+
+  void take_intervals(const certify::EnergyBound& energy)
+  {
+    for (JudgedNumber& number : record_.numbers)
+      if (const certify::QuantityInterval* interval = adapt::find_interval(energy, number.interval.name))
+        number.interval = *interval;
+  }
+
+  const JudgeRequest& request_;
+  mesh::Mesh<dim> mesh_;  ///< the first one, which is theirs
+  problem::Problem<dim> problem_;
+  std::vector<problem::Quantity<dim>> quantities_;
+  certify::ForeignSolution<dim> theirs_{};
+  std::optional<fem::LagrangeSpace<dim>> space_{};
+  JudgementRecord record_{};
+};
+
+ExitCode exit_code(const std::string& status)
+{
+  if (status == "judged" || status == "accepted") return ExitCode::success;
+  return status == "rejected" ? ExitCode::rejected : ExitCode::budget_used_up;
+}
+
+template <int dim>
+ExitCode judge(const JudgeRequest& request, const case_file::Config& given, mesh::Mesh<dim> mesh)
+{
+  const case_file::Config config = judging_config(given);
+  // Without marked cells, bisection copies the mesh.
+  Judge<dim> judge(request, given, mesh::bisect<dim>(mesh, {}).mesh);
+  RunHooks hooks{.is_part = true};
+  LoopHooks<dim>& of_dimension = hooks.of<dim>();
+  of_dimension.level = [&](const auto& level, const io::LevelRecord&) { judge(*level); };
+  if (!config.history)
+    of_dimension.stop = [&](const auto&)
+    { return judge.record().is_sharp() ? "their solution is judged as sharply as asked for" : ""; };
+  const algebra::Environment environment;
+  const ExitCode code = run(config, std::move(mesh), Progress(request.quiet), hooks);
+  judge.write(config.output.directory);
+  print(judgement_text(judge.record(), config.output.directory.string()));
+  return code == ExitCode::failed ? code : exit_code(judge.record().status());
+}
+
+}  // namespace
+
+ExitCode judge(const JudgeRequest& request)
+{
+  if (n_processes() > 1) throw InputError({}, "tribound judge runs as one process", "without mpirun");
+  return with_case(request, &stop_on_signals(),
+                   [&]<int dim>(const case_file::Config& config, mesh::Mesh<dim> mesh)
+                   { return judge<dim>(request, config, std::move(mesh)); });
+}
+
+}  // namespace tribound::app

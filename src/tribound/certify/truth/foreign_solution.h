@@ -1,0 +1,41 @@
+#pragma once
+
+/// @file foreign_solution.h
+/// The solution of another program as a function on a mesh of ours.
+
+#include <string>
+#include <vector>
+
+#include "tribound/base/types.h"
+#include "tribound/mesh/import/imported_solution.h"
+#include "tribound/mesh/mesh.h"
+
+namespace tribound::certify
+{
+
+/// A displacement in P^q, continuous on each body, and a stress that is in P^q on each cell.
+template <int dim>
+struct ForeignSolution
+{
+  int degree = 1;                     ///< q
+  std::vector<double> u{};            ///< at the degrees of freedom of LagrangeSpace(mesh, q)
+  std::vector<Tensor<dim>> stress{};  ///< [cell n_nodes + node]; empty: none
+  double node_distance = 0;           ///< largest distance of a node from its vertex or its place on a cell
+  double curved_distance = 0;         ///< of nodes in the middle of edges from the straight edge
+  bool is_exact = true;               ///< whether it is their function, not one with its values at nodes
+  std::string read_as{};              ///< in words
+};
+
+/// Finds the nodes by their coordinates, to 1e-6 of the size of the mesh, and where bodies touch by the
+/// elements that they belong to. On simplices with straight edges it is their function. On others it is the
+/// function in P^2 on the cells into which the elements were cut that takes their values; at the middles of
+/// edges that cut an element, those of its shape functions. Points without elements are in P^q for the
+/// largest q whose nodes are all among them.
+///
+/// Throws InputError for another mesh (tells whether it is larger or shifted), a node without a value or with
+/// two, points that may belong to either of two bodies.
+template <int dim>
+[[nodiscard]] ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs,
+                                                    const mesh::Mesh<dim>& mesh);
+
+}  // namespace tribound::certify
