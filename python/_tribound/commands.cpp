@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -136,6 +137,21 @@ std::string check(const Document& document, const std::vector<std::string>& over
   return text;
 }
 
+int judge(const Document& document, const std::vector<std::string>& overrides, bool quiet,
+          const py::dict& options)
+{
+  app::JudgeRequest what{request(document, overrides, quiet)};
+  what.solution = options["solution"].cast<std::string>();
+  what.field = options["field"].cast<std::string>();
+  what.stress = options["stress"].cast<std::string>();
+  what.step = options["step"].cast<std::optional<int>>();
+  what.load_step = options["load_step"].cast<std::optional<int>>();
+  what.numbers = options["numbers"].cast<std::vector<std::string>>();
+  what.accept = options["accept"].cast<std::optional<double>>();
+  const py::gil_scoped_release others_run;
+  return static_cast<int>(app::judge(what));
+}
+
 /// Text is printed on the host's functions. They are never released: the process may end after the
 /// interpreter.
 void set_output(const py::object& print, const py::object& note)
@@ -194,6 +210,7 @@ void bind_commands(py::module_& module)
                const py::gil_scoped_release others_run;
                return static_cast<int>(app::study(request(document, overrides, quiet)));
              });
+  module.def("judge", &judge);
   module.def("read_results", &read_results);
 }
 

@@ -9,6 +9,7 @@
 from tribound import _tribound
 from tribound.case import Case, Function
 from tribound.errors import InputError, SolveError, WriteError
+from tribound.judge import Judgement, judge
 from tribound.level import Contact, Level, Probe, Resultant, Section
 from tribound.mesh import Mesh, MeshArrays
 from tribound.result import Quantity, Result, Step, Study, Verification
@@ -22,6 +23,7 @@ __all__ = [
     "Contact",
     "Function",
     "InputError",
+    "Judgement",
     "Level",
     "Mesh",
     "MeshArrays",
@@ -36,6 +38,7 @@ __all__ = [
     "Verification",
     "WriteError",
     "check",
+    "judge",
     "levels",
     "run",
     "study",

@@ -1,0 +1,115 @@
+"""The guaranteed error of any program's solution."""
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tribound import _tribound
+from tribound.errors import InputError
+from tribound.mesh import Mesh
+from tribound.run import AnyCase, Input, Place
+from tribound.session import Work
+
+Interval = tuple[float, float]
+
+
+class Judgement(dict[str, Any]):
+    """judgement.json, see docs/output.md; intervals as pairs, of which the upper end may be infinite."""
+
+    def __init__(self, place: Place, content: Mapping[str, Any]) -> None:
+        super().__init__(content)
+        self._place = place
+
+    @property
+    def status(self) -> str:
+        """judged, wide or no bound; with accept: accepted, rejected or undecided."""
+        return str(self["status"])
+
+    @property
+    def relative(self) -> Interval | None:
+        """The relative error of their displacement in the energy norm; None where there is no bound."""
+        return _interval(self["displacement"], "relative")
+
+    @property
+    def stress(self) -> Interval | None:
+        """That of their stress; None where it was not read, or has no bound."""
+        return _interval(self["stress"], "relative")
+
+    @property
+    def error(self) -> Interval | None:
+        """The error of their displacement in the energy norm."""
+        return _interval(self["displacement"], "error")
+
+    @property
+    def directory(self) -> Path:
+        """The files of the judgement, and of the run behind it."""
+        return self._place.path / "judge"
+
+
+def _interval(field: Mapping[str, Any] | None, name: str) -> Interval | None:
+    if field is None or field[name] is None:
+        return None
+    lower, upper = field[name]
+    return lower, np.inf if upper is None else upper
+
+
+def judge(
+    case: AnyCase,
+    solution: str | os.PathLike[str] | tuple[ArrayLike, ...],
+    mesh: Mesh | None = None,
+    *,
+    field: str = "",
+    stress: str = "",
+    step: int | None = None,
+    load_step: int | None = None,
+    numbers: Mapping[str, float] | None = None,
+    accept: float | None = None,
+    set: Mapping[str, Any] | None = None,
+    directory: str | os.PathLike[str] | None = None,
+    verbose: bool = False,
+) -> Judgement:
+    """Bounds the error of a solution on the mesh of the case from both sides, as `tribound judge`.
+
+    solution: a file of docs/judge.md, or arrays: points (n, d), displacements (n, d) and perhaps stresses
+    (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. numbers: what was
+    computed for quantities of the case. accept: the largest relative error.
+    """
+    place = Place(directory)
+    given = Input(case, mesh, set, place)
+    file = Path(solution) if isinstance(solution, str | os.PathLike) else _write(place.path, *solution)
+    options = {
+        "solution": str(file),
+        "field": field,
+        "stress": stress,
+        "step": step,
+        "load_step": load_step,
+        "numbers": [f"{name}={float(value)!r}" for name, value in (numbers or {}).items()],
+        "accept": accept,
+    }
+    Work(lambda _: _tribound.judge(given.document, given.overrides, not verbose, options), verbose).result()
+    return Judgement(place, json.loads((place.path / "judge/judgement.json").read_text()))
+
+
+def _write(directory: Path, points: ArrayLike, displacement: ArrayLike, stress: ArrayLike | None = None) -> Path:
+    """The arrays as a table."""
+    x, u = np.asarray(points, dtype=float), np.asarray(displacement, dtype=float)
+    if x.ndim != 2 or x.shape[1] not in (2, 3) or u.shape != x.shape:
+        problem = f"has points of shape {x.shape} and displacements of shape {u.shape}"
+        raise InputError.at("solution", problem, "(n, d) both", "judge")
+    names = [*"xyz"[: x.shape[1]], *("u" + axis for axis in "xyz"[: x.shape[1]])]
+    columns = [x, u]
+    if stress is not None:
+        s = np.asarray(stress, dtype=float)
+        components = {3: ("xx", "yy", "xy"), 6: ("xx", "yy", "zz", "xy", "yz", "xz")}
+        if s.ndim != 2 or len(s) != len(x) or s.shape[1] not in components:
+            raise InputError.at("solution", f"has stresses of shape {s.shape}", "(n, 3) or (n, 6)", "judge")
+        names += ["s" + component for component in components[s.shape[1]]]
+        columns.append(s)
+    file = directory / "solution.csv"
+    np.savetxt(file, np.column_stack(columns), delimiter=",", header=",".join(names), comments="", fmt="%.17g")
+    return file
