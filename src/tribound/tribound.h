@@ -40,6 +40,7 @@
 #include "tribound/mesh/gmsh_geometry.h"
 #include "tribound/mesh/import/cell_sets.h"
 #include "tribound/mesh/import/file_text.h"
+#include "tribound/mesh/import/imported_solution.h"
 #include "tribound/mesh/import/inp_assembler.h"
 #include "tribound/mesh/import/node_sets.h"
 #include "tribound/mesh/import/read.h"

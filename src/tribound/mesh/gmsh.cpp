@@ -47,19 +47,15 @@ InputError no_memory(const std::filesystem::path& file)
           "a coarser mesh; is a mesh size or a number of nodes absurd?"};
 }
 
-/// Runs in the child: the mesh, or why there is none.
-std::string load_as_bytes(const MeshFile& source)
+/// Runs in the child: what `load` returns, or why there is none.
+std::string loaded(const std::filesystem::path& file, const std::function<std::string()>& load)
 {
-  const auto failure = [&](std::string_view what)
-  {
-    return bytes_of(
-        InputError({.file = source.path.string()}, fmt::format("Gmsh cannot read the file: {}", what)));
+  const auto failure = [&](std::string_view what) {
+    return bytes_of(InputError({.file = file.string()}, fmt::format("Gmsh cannot read the file: {}", what)));
   };
   try
   {
-    std::vector<std::string> notes;
-    const ImportedMesh mesh = load_gmsh(source, notes);
-    return bytes_of(mesh, notes);
+    return load();
   }
   catch (const InputError& error)
   {
@@ -67,7 +63,7 @@ std::string load_as_bytes(const MeshFile& source)
   }
   catch (const std::bad_alloc&)
   {
-    return bytes_of(no_memory(source.path));
+    return bytes_of(no_memory(file));
   }
   catch (const std::exception& error)
   {
@@ -121,12 +117,11 @@ std::string printed_errors(std::string_view output)
 
 }  // namespace
 
-ImportedMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, double patience,
-                       std::vector<std::string>& notes)
+std::string load_apart(const std::filesystem::path& file, const std::function<std::string()>& load,
+                       const std::atomic<bool>* stop, double patience)
 {
-  const std::filesystem::path& file = source.path;
-  const ApartOutcome outcome =
-      run_apart([&] { return load_as_bytes(source); },
+  ApartOutcome outcome =
+      run_apart([&] { return loaded(file, load); },
                 {.silence = patience, .memory = share_of_machine * machine_memory(), .stop = stop});
   switch (outcome.end)
   {
@@ -139,8 +134,21 @@ ImportedMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, do
     case ApartEnd::out_of_time:
       throw beyond_limits(file, fmt::format("{:.3g} s", reading_limits(file).seconds));
     default:
-      return mesh_from(outcome.result, {.file = file.string()}, notes);
+      return std::move(outcome.result);
   }
+}
+
+ImportedMesh read_gmsh(const MeshFile& source, const std::atomic<bool>* stop, double patience,
+                       std::vector<std::string>& notes)
+{
+  const auto load = [&]
+  {
+    std::vector<std::string> its_notes;
+    const ImportedMesh mesh = load_gmsh(source, its_notes);
+    return bytes_of(mesh, its_notes);
+  };
+  const std::string bytes = load_apart(source.path, load, stop, patience);
+  return mesh_from(bytes, {.file = source.path.string()}, notes);
 }
 
 std::string gmsh_version()

@@ -328,4 +328,39 @@ Elements elements_in(int type, int entity)
   return {tags.values(), nodes.values()};
 }
 
+std::vector<View> views()
+{
+  Answer<int> tags;
+  call<decltype(gmshViewGetTags)>("gmshViewGetTags", &tags.data, &tags.size);
+  std::vector<View> result;
+  for (const int tag : tags.values())
+  {
+    const std::string view =
+        "View[" + std::to_string(call<decltype(gmshViewGetIndex)>("gmshViewGetIndex", tag)) + "].";
+    Answer<char> name;
+    double n_steps = 0;
+    call<decltype(gmshOptionGetString)>("gmshOptionGetString", (view + "Name").c_str(), &name.data);
+    call<decltype(gmshOptionGetNumber)>("gmshOptionGetNumber", (view + "NbTimeStep").c_str(), &n_steps);
+    result.push_back({name.data, tag, static_cast<int>(n_steps)});
+  }
+  return result;
+}
+
+ModelData model_data(const View& view, int step)
+{
+  Answer<char> kind;
+  Answer<std::size_t> tags;
+  Answer<double*> values;
+  Answer<std::size_t> n_values;
+  ModelData data{};
+  call<decltype(gmshViewGetModelData)>("gmshViewGetModelData", view.tag, step, &kind.data, &tags.data,
+                                       &tags.size, &values.data, &n_values.data, &values.size, &data.time,
+                                       &data.n_components);
+  data.kind = kind.data;
+  data.tags = tags.values();
+  for (std::size_t i = 0; i < values.size; ++i)
+    data.values.emplace_back(values.data[i], values.data[i] + n_values.data[i]);
+  return data;
+}
+
 }  // namespace tribound::mesh::gmsh

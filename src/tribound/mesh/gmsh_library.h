@@ -97,4 +97,26 @@ struct Elements
 /// The elements of a type in an entity.
 [[nodiscard]] Elements elements_in(int type, int entity);
 
+struct View
+{
+  std::string name;
+  int tag;
+  int n_steps;
+};
+
+/// The fields that come with a mesh.
+[[nodiscard]] std::vector<View> views();
+
+/// A step of a view on the mesh.
+struct ModelData
+{
+  std::string kind;               ///< "NodeData", "ElementData", "ElementNodeData"
+  std::vector<std::size_t> tags;  ///< of nodes or elements
+  std::vector<std::vector<double>> values;
+  double time;
+  int n_components;
+};
+
+[[nodiscard]] ModelData model_data(const View& view, int step);
+
 }  // namespace tribound::mesh::gmsh

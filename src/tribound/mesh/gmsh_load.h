@@ -1,8 +1,11 @@
 #pragma once
 
 /// @file gmsh_load.h
-/// The part of gmsh.cpp that runs in a process of its own: reads or meshes a file by Gmsh's library.
+/// A file read or meshed by Gmsh's library, in a process of its own.
 
+#include <atomic>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,5 +18,11 @@ namespace tribound::mesh
 /// Reads a mesh or meshes a geometry, group by group; see read_gmsh(). Throws InputError, and what Gmsh
 /// throws; may also crash or hang where Gmsh does.
 [[nodiscard]] ImportedMesh load_gmsh(const MeshFile& source, std::vector<std::string>& notes);
+
+/// What `load`, which uses Gmsh, returns in a copy of this process: see read_gmsh(). An InputError that it
+/// throws is returned as bytes (import/imported_bytes.h).
+[[nodiscard]] std::string load_apart(const std::filesystem::path& file,
+                                     const std::function<std::string()>& load, const std::atomic<bool>* stop,
+                                     double patience);
 
 }  // namespace tribound::mesh

@@ -144,11 +144,8 @@ void get_sets(ByteReader& bytes, std::vector<Set>& sets, const Get& get_members)
   }
 }
 
-}  // namespace
-
-std::string bytes_of(const ImportedMesh& mesh, const std::vector<std::string>& notes)
+void put(ByteWriter& bytes, const ImportedMesh& mesh, const std::vector<std::string>& notes)
 {
-  ByteWriter bytes;
   bytes.put(is_mesh);
   bytes.put(notes);
   bytes.put(mesh.nodes);
@@ -162,6 +159,25 @@ std::string bytes_of(const ImportedMesh& mesh, const std::vector<std::string>& n
              bytes.put(set.nodes);
              bytes.put(static_cast<std::size_t>(set.has_facets ? 1 : 0));
            });
+}
+
+}  // namespace
+
+std::string bytes_of(const ImportedMesh& mesh, const std::vector<std::string>& notes)
+{
+  ByteWriter bytes;
+  put(bytes, mesh, notes);
+  return bytes.take();
+}
+
+std::string bytes_of(const ImportedSolution& solution)
+{
+  ByteWriter bytes;
+  put(bytes, solution.mesh, solution.notes);
+  bytes.put(solution.displacement);
+  bytes.put(solution.stress);
+  bytes.put(static_cast<std::size_t>(solution.stress_of_elements ? 1 : 0));
+  bytes.put(std::string_view(solution.description));
   return bytes.take();
 }
 
@@ -176,9 +192,11 @@ std::string bytes_of(const InputError& error)
   return bytes.take();
 }
 
-ImportedMesh mesh_from(std::string_view result, const Where& source, std::vector<std::string>& notes)
+namespace
 {
-  ByteReader bytes(result);
+
+ImportedMesh get_mesh(ByteReader& bytes, const Where& source, std::vector<std::string>& notes)
+{
   std::size_t number = is_refused;
   bytes.get(number);
   if (number == is_refused)
@@ -211,6 +229,28 @@ ImportedMesh mesh_from(std::string_view result, const Where& source, std::vector
              set.has_facets = number != 0;
            });
   return mesh;
+}
+
+}  // namespace
+
+ImportedMesh mesh_from(std::string_view result, const Where& source, std::vector<std::string>& notes)
+{
+  ByteReader bytes(result);
+  return get_mesh(bytes, source, notes);
+}
+
+ImportedSolution solution_from(std::string_view result, const Where& source)
+{
+  ByteReader bytes(result);
+  ImportedSolution solution;
+  solution.mesh = get_mesh(bytes, source, solution.notes);
+  bytes.get(solution.displacement);
+  bytes.get(solution.stress);
+  std::size_t number = 0;
+  bytes.get(number);
+  solution.stress_of_elements = number != 0;
+  bytes.get(solution.description);
+  return solution;
 }
 
 }  // namespace tribound::mesh

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file imported_solution.h
-/// What another program has computed, as a file has it.
+/// Solutions of other programs, as their files have them.
 
 #include <array>
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tribound/base/types.h"
 #include "tribound/mesh/import/imported_mesh.h"
 
 namespace tribound::mesh
@@ -17,21 +18,40 @@ namespace tribound::mesh
 /// A displacement, and perhaps a stress, as a file has it, on the elements that the file has.
 struct ImportedSolution
 {
-  ImportedMesh mesh{};  ///< nodes and cells; no cells: a list of points (CSV). No sets needed
-  std::vector<Point<3>> displacement{};         ///< per node; NaN where the file has none
-  std::vector<std::array<double, 6>> stress{};  ///< xx yy zz xy yz xz per node; empty: none
-  bool stress_of_elements = false;   ///< then one entry per entry of the nodes of all blocks of mesh.cells
-  std::string description{};         ///< "CalculiX results, step 2 (t = 1), C3D10" for the judgement
-  std::vector<std::string> notes{};  ///< what was left out, "theirs.vtu: ..."
+  ImportedMesh mesh{};                   ///< no cells: a list of points, numbered by the lines of the file
+  std::vector<Point<3>> displacement{};  ///< per node; NaN in all components where the file has none
+  std::vector<std::array<double, 6>> stress{};  ///< xx yy zz xy yz xz; NaN in all where there is none
+  /// The stress has one entry per entry of the nodes of all blocks of mesh.cells, in order; else per node.
+  bool stress_of_elements = false;
+  std::string description{};         ///< "CalculiX results, step 2 (t = 1), C3D10"
+  std::vector<std::string> notes{};  ///< what was left out or chosen, "theirs.vtu: ..."
 };
 
+/// What to read of a file that has several fields or steps.
 struct SolutionChoice
 {
-  std::string field{};
-  std::string stress{};
-  std::optional<int> step{};
+  std::string field{};        ///< the displacement; empty: by usual names
+  std::string stress{};       ///< empty: by usual names, and a file may have none
+  std::optional<int> step{};  ///< by the number that the file has; nothing: the last
 };
 
+/// Reads .csv, .msh, .vtu, .pvtu, .vtk and .frd, by the suffix.
+///
+/// CSV: a header with x, y, z, ux, uy, uz, sxx, syy, szz, sxy, syz, sxz in any order, in 2D without those of
+/// z; columns between commas, semicolons, tabs or blanks; comments after '#'. `field` and `stress` replace
+/// the letters u and s.
+///
+/// VTK: arrays of points. The stress has 9 components (tensors by rows: the symmetric part is taken), 6 (xx,
+/// yy, zz, xy, yz, xz), 4 (xx, yy, zz, xy; or where the two in the middle are equal everywhere, a tensor of
+/// 2D by rows) or 3 (xx, yy, xy). Where pieces have the same point, it has the values of the first.
+///
+/// .msh: views by name, of nodes, of nodes of elements, or (only stress) of elements. Displacements have 2 or
+/// 3 components, stresses those of VTK. Steps are counted as in the file, from 0.
+///
+/// .frd of CalculiX, as text: steps are those of the deck; the last increment of a step is read.
+///
+/// Components that a plane file does not have are 0. Throws InputError with the file and the line, node or
+/// array.
 [[nodiscard]] ImportedSolution read_solution(const std::filesystem::path& file, const SolutionChoice& choice);
 
 }  // namespace tribound::mesh
