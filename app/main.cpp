@@ -228,8 +228,9 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "study") return study(arguments);
   if (command == "judge")
   {
-    static_cast<CaseRequest&>(arguments.judge) = arguments;
-    return judge(arguments.judge);
+    JudgeRequest request = arguments.judge;
+    static_cast<CaseRequest&>(request) = arguments;
+    return judge(request);
   }
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
