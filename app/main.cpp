@@ -213,10 +213,15 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   require_address_space();
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "run") return run(arguments, arguments.restart, {});
+  if (command == "judge")
+  {
+    JudgeRequest request = arguments.judge;
+    static_cast<CaseRequest&>(request) = arguments;
+    return judge(request);
+  }
   if (n_processes() > 1)
   {
-    const bool needs_one =
-        command == "verify" || command == "study" || command == "judge" || command == "sweep";
+    const bool needs_one = command == "verify" || command == "study" || command == "sweep";
     if (!is_first_process() && command == "info") info(false);
     if (!is_first_process()) return needs_one ? ExitCode::bad_input : ExitCode::success;
     if (needs_one)
@@ -226,12 +231,6 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   }
   if (command == "verify") return verify(arguments, arguments.refinements);
   if (command == "study") return study(arguments);
-  if (command == "judge")
-  {
-    JudgeRequest request = arguments.judge;
-    static_cast<CaseRequest&>(request) = arguments;
-    return judge(request);
-  }
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
   if (command == "mesh") write_mesh(arguments.mesh);
@@ -284,6 +283,7 @@ int main(int argc, char** argv)
   catch (...)
   {
     const auto [code, message] = describe(std::current_exception());
-    return report(code, message);
+    // Run on several processes, what reaches this is wrong on all of them.
+    return is_first_process() ? report(code, message) : static_cast<int>(code);
   }
 }

@@ -13,7 +13,6 @@
 #include "app/console/text.h"
 #include "app/result/judgement.h"
 #include "tribound/adapt/error_bars.h"
-#include "tribound/algebra/petsc.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
 #include "tribound/certify/energy/energy_bound.h"
@@ -22,7 +21,6 @@
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/record/error_bars.h"
-#include "tribound/mesh/bisect.h"
 #include "tribound/mesh/import/imported_solution.h"
 
 namespace tribound::app
@@ -52,17 +50,14 @@ bool follows_from_displacement(problem::QuantityKind kind)
   return kind == K::energy || kind == K::load_work || kind == K::mean_displacement || kind == K::spring_force;
 }
 
-/// The case as it is solved to judge: meshes follow the energy error, and only sharpness and limits end it.
-case_file::Config judging_config(const case_file::Config& config)
+/// Meshes follow the energy error, and only sharpness and limits end the run.
+void prepare_to_judge(case_file::Config& config)
 {
-  case_file::Config judging = config;
-  judging.output.directory /= "judge";
-  if (judging.adapt.bars.levels == adapt::EnergyLevels::off || !config.history)
-    judging.adapt.bars.levels = adapt::EnergyLevels::every;
-  if (config.history) return judging;  // which refines for all of its steps, to adapt.tolerance
-  judging.adapt.measure = adapt::ErrorMeasure::energy;
-  judging.adapt.tolerance = 0;
-  return judging;
+  config.output.directory /= "judge";
+  config.adapt.bars.levels = adapt::EnergyLevels::every;
+  if (config.history) return;  // which refines for all of its steps, to adapt.tolerance
+  config.adapt.measure = adapt::ErrorMeasure::energy;
+  config.adapt.tolerance = 0;
 }
 
 /// What the run that judges calls.
@@ -84,12 +79,13 @@ class Judge
   }
 
   /// The level, or the load step, against theirs.
-  void operator()(const app::KeptLevel<dim>& level)
+  void operator()(const app::KeptLevel<dim>& level, const io::LevelRecord& record)
   {
     if (level.t && request_.load_step && *request_.load_step != level.number) return;
     if (level.t) record_.load_step = level.number;
-    record_.cells = level.discrete->mesh.n_cells();
+    record_.cells = static_cast<long>(level.discrete->mesh.n_global_cells());
     const std::optional<certify::EnergyBound>& energy = level.level.energy;
+    if (record.balance) record_.balance(*record.balance);
     record_.judgement.reset();
     record_.reason = energy ? energy->reason : "certify.energy is off";
     if (energy) take_intervals(*energy);
@@ -119,7 +115,7 @@ class Judge
     const mesh::ImportedSolution solution =
         mesh::read_solution(request_.solution, {request_.field, request_.stress, request_.step});
     for (const std::string& text : solution.notes)
-      if (!request_.quiet) note(text);
+      if (!request_.quiet && is_first_process()) note(text);
     theirs_ = certify::foreign_solution<dim>(solution, mesh_);
     space_.emplace(mesh_, theirs_.degree);
     record_.solution = request_.solution;
@@ -154,6 +150,12 @@ class Judge
                          "the name of one of its quantities");
       number->theirs = value;
     }
+    if (!theirs_.stress.empty())
+    {
+      const std::vector<Point<dim>> forces = certify::boundary_forces<dim>(*space_, theirs_.stress);
+      for (std::size_t b = 0; b < forces.size(); ++b)
+        record_.forces.push_back({mesh_.boundary_names()[b], {forces[b].begin(), forces[b].end()}});
+    }
     if (config.history) return;  // gaps and slips of a path are not theirs
     for (std::size_t k = 0; k < form.segments().size(); ++k)
       for (const contact::ContactState<dim>& state : form.contact_states(theirs_.u, k))
@@ -187,30 +189,31 @@ ExitCode exit_code(const std::string& status)
 }
 
 template <int dim>
-ExitCode judge(const JudgeRequest& request, const case_file::Config& given, mesh::Mesh<dim> mesh)
+ExitCode judge(const JudgeRequest& request, const case_file::Config& config, mesh::Mesh<dim> mesh)
 {
-  const case_file::Config config = judging_config(given);
-  // Without marked cells, bisection copies the mesh.
-  Judge<dim> judge(request, given, mesh::bisect<dim>(mesh, {}).mesh);
-  RunHooks hooks{.is_part = true};
+  Judge<dim> judge(request, config, std::move(mesh));
+  RunHooks hooks{.change = prepare_to_judge, .is_part = true};
   LoopHooks<dim>& of_dimension = hooks.of<dim>();
-  of_dimension.level = [&](const auto& level, const io::LevelRecord&) { judge(*level); };
+  of_dimension.level = [&](const auto& level, const io::LevelRecord& record) { judge(*level, record); };
   if (!config.history)
     of_dimension.stop = [&](const auto&)
     { return judge.record().is_sharp() ? "their solution is judged as sharply as asked for" : ""; };
-  const algebra::Environment environment;
-  const ExitCode code = run(config, std::move(mesh), Progress(request.quiet), hooks);
-  judge.write(config.output.directory);
-  print(judgement_text(judge.record(), config.output.directory.string()));
-  return code == ExitCode::failed ? code : exit_code(judge.record().status());
+  const ExitCode code = run(request, {}, hooks);
+  const std::filesystem::path directory = config.output.directory / "judge";
+  if (is_first_process() && std::filesystem::exists(directory))
+  {
+    judge.write(directory);
+    print(judgement_text(judge.record(), directory.string()));
+  }
+  return code == ExitCode::success || code == ExitCode::budget_used_up ? exit_code(judge.record().status())
+                                                                       : code;
 }
 
 }  // namespace
 
 ExitCode judge(const JudgeRequest& request)
 {
-  if (n_processes() > 1) throw InputError({}, "tribound judge runs as one process", "without mpirun");
-  return with_case(request, &stop_on_signals(),
+  return with_case(request, nullptr,
                    [&]<int dim>(const case_file::Config& config, mesh::Mesh<dim> mesh)
                    { return judge<dim>(request, config, std::move(mesh)); });
 }

@@ -52,7 +52,8 @@ struct LoopHooks
 struct RunHooks
 {
   adapt::StepObserver step{};
-  bool is_part = false;  ///< of a larger command, which says how it ends
+  std::function<void(case_file::Config&)> change{};  ///< the case, before anything is done with it
+  bool is_part = false;                              ///< of a larger command, which says how it ends
   LoopHooks<2> plane{};
   LoopHooks<3> space{};
 

@@ -157,8 +157,9 @@ ExitCode run_on(const Ranks& ranks, const CaseRequest& request, const std::strin
   constexpr std::int64_t most_to_look_at = 100'000;
   const Progress progress(request.quiet || !ranks.is_first());
   const std::optional<Checkpoint> checkpoint = read_checkpoint(place, ranks);
-  const case_file::Config config = ranks.together(
+  case_file::Config config = ranks.together(
       [&] { return checkpoint ? restarted_config(request, *checkpoint) : read_config(request); });
+  if (hooks.change) hooks.change(config);
   const bool is_alone = ranks.size() == 1 && !checkpoint;
   std::optional<mesh::AnyMesh> whole;
   const bool is_plane = ranks.on_first(

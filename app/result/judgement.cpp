@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "app/console/text.h"
 #include "tribound/io/file/csv.h"
@@ -125,6 +127,30 @@ std::optional<certify::ErrorInterval> JudgedNumber::wrong_by() const
       std::max(std::abs(*theirs - interval.lower), std::abs(*theirs - interval.upper))};
 }
 
+void JudgementRecord::balance(const certify::Balance& ours)
+{
+  if (forces.empty()) return;
+  std::vector<double> sum(forces.front().theirs.size(), 0.0);
+  const auto add = [](std::vector<double>& to, const std::vector<double>& force)
+  { std::ranges::transform(to, force, to.begin(), std::plus<>()); };
+  const auto size = [](const std::vector<double>& force)
+  { return Eigen::Map<const Eigen::VectorXd>(force.data(), std::ssize(force)).norm(); };
+  double largest = 0;
+  for (JudgedForce& force : forces)
+  {
+    add(sum, force.theirs);
+    force.ours.assign(sum.size(), 0.0);
+  }
+  for (const certify::BalanceRow& row : ours.rows)
+  {
+    if (row.kind == certify::BalanceKind::sum) continue;
+    largest = std::max(largest, size(row.force));
+    const auto at = std::ranges::find(forces, row.name, &JudgedForce::boundary);
+    add(row.source == "body force" || at == forces.end() ? sum : at->ours, row.force);
+  }
+  imbalance = largest > 0 ? std::optional(size(sum) / largest) : std::nullopt;
+}
+
 bool JudgementRecord::is_sharp() const
 {
   return judgement && judgement->bound <= sharpness * judgement->displacement.distance;
@@ -160,6 +186,14 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
   else
     text += paragraph("errors", "not bounded: " + r.reason);
   for (const JudgedNumber& number : r.numbers) text += number_text(number);
+  for (const JudgedForce& force : r.forces)
+    if (!force.ours.empty())
+      text += line("force", fmt::format("at \"{}\": ({:.5g}), in equilibrium ({:.5g}){}", force.boundary,
+                                        fmt::join(force.theirs, ", "), fmt::join(force.ours, ", "),
+                                        r.facts.behind(problem::UnitOf::force)));
+  if (r.imbalance)
+    text += line("balance",
+                 fmt::format("the forces of their stress miss the loads by {}", percent(*r.imbalance)));
   if (r.penetration)
     text += line("penetration", *r.penetration > 0
                                     ? fmt::format("up to {:.4g}{} on \"{}\"", *r.penetration,
@@ -199,10 +233,15 @@ std::string judgement_json(const JudgementRecord& r)
       {"displacement", nullptr},
       {"stress", nullptr},
       {"quantities", io::Json::array()},
+      {"forces", io::Json::array()},
+      {"imbalance", io::number_or_null(r.imbalance)},
       {"penetration", io::number_or_null(r.penetration)},
       {"rigid_difference", io::Json::array()},
       {"factor", nullptr},
       {"doubt", nullptr}};
+  for (const JudgedForce& force : r.forces)
+    object["forces"].push_back(
+        {{"boundary", force.boundary}, {"theirs", force.theirs}, {"ours", force.ours}});
   for (const JudgedNumber& number : r.numbers) object["quantities"].push_back(json(number));
   if (!r.judgement) return io::json_text(object);
   const certify::Judgement& j = *r.judgement;

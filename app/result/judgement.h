@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tribound/certify/bound/balance.h"
 #include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/certify/truth/judgement.h"
 #include "tribound/io/file/json_forward.h"
@@ -26,6 +27,14 @@ struct JudgedNumber
   [[nodiscard]] std::optional<certify::ErrorInterval> wrong_by() const;
 };
 
+/// The force on the body at a boundary: by their stress, and in equilibrium with all others.
+struct JudgedForce
+{
+  std::string boundary{};
+  std::vector<double> theirs{};
+  std::vector<double> ours{};
+};
+
 struct JudgementRecord
 {
   io::CaseFacts facts{};
@@ -39,6 +48,9 @@ struct JudgementRecord
   std::string reason{};                           ///< why there is no bound; empty: there is one
   std::optional<certify::Judgement> judgement{};  ///< where there is a bound
   std::vector<JudgedNumber> numbers{};
+  std::vector<JudgedForce> forces{};  ///< where their stress was read
+  std::optional<double>
+      imbalance{};  ///< of their forces and the loads inside, over the largest force of ours
   std::optional<double> penetration{};  ///< the largest; absent: no contact
   std::string penetrated{};             ///< the boundary
   double sharpness = 0;
@@ -46,6 +58,8 @@ struct JudgementRecord
   std::optional<int> load_step{};
   std::optional<double> accept{};
 
+  /// Sets the forces of ours, and the imbalance.
+  void balance(const certify::Balance& ours);
   /// Whether the bound is at most `sharpness` times the distance.
   [[nodiscard]] bool is_sharp() const;
   /// "judged", "wide" (the interval is wider than asked for) or "no bound"; with `accept` "accepted",

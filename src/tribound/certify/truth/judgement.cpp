@@ -8,6 +8,8 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/truth/solution_error.h"
+#include "tribound/fem/nested.h"
+#include "tribound/fem/quadrature.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
 
@@ -114,66 +116,78 @@ std::string doubt(const LocalError& error)
   return text + (power != 0 ? ": metres for millimetres?" : "");
 }
 
-/// The node of each vertex.
 template <int dim>
-std::vector<Index> vertex_nodes(const fem::LagrangeSpace<dim>& space)
+Point<dim> value_at(const fem::LagrangeSpace<dim>& space, std::span<const double> u, Index cell,
+                    const Point<dim>& xhat)
 {
-  std::vector<Index> nodes(space.mesh().n_vertices());
-  for (Index c = 0; c < space.mesh().n_cells(); ++c)
-    for (int i = 0; i < space.basis().n_nodes(); ++i)
-      for (int v = 0; v <= dim; ++v)
-        if (space.basis().node(i)[v] == space.degree())
-          nodes[space.mesh().cell(c)[v]] = space.cell_nodes(c)[i];
-  return nodes;
+  const fem::Tabulation<dim> table = space.basis().tabulate({&xhat, 1});
+  Point<dim> value = Point<dim>::Zero();
+  for (int i = 0; i < table.n_nodes; ++i)
+    value += table.values[i] * Eigen::Map<const Point<dim>>(
+                                   u.data() + dim * static_cast<std::size_t>(space.cell_nodes(cell)[i]));
+  return value;
 }
 
-/// Bisection keeps the numbers of vertices.
+/// The normal equations of the nearest rigid motion of a body.
+template <int dim>
+struct RigidFit
+{
+  static constexpr int n = dim == 2 ? 3 : 6;
+  Point<dim> centroid = Point<dim>::Zero();
+  double volume = 0;
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, 1);
+
+  void add(double weight, const Point<dim>& point, const Point<dim>& difference)
+  {
+    Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(dim, n);
+    motions.leftCols(dim).setIdentity();
+    const Point<dim> x = point - centroid;
+    if constexpr (dim == 2)
+      motions.col(2) << -x[1], x[0];
+    else
+      motions.rightCols(3) << 0, x[2], -x[1], -x[2], 0, x[0], x[1], -x[0], 0;
+    a += weight * motions.transpose() * motions;
+    b += weight * motions.transpose() * difference;
+  }
+};
+
+/// Fitted at the vertices of the cells of u, weighted by their volumes.
 template <int dim>
 std::vector<RigidDifference> rigid_differences(const fem::LagrangeSpace<dim>& their_space,
                                                std::span<const double> v,
                                                const fem::LagrangeSpace<dim>& space,
                                                std::span<const double> u)
 {
-  constexpr int n_rotations = dim == 2 ? 1 : 3;
   const mesh::Mesh<dim>& mesh = their_space.mesh();
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
-  const std::vector<Index> theirs = vertex_nodes(their_space);
-  const std::vector<Index> ours = vertex_nodes(space);
+  std::vector<RigidFit<dim>> fits(bodies.n);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+  {
+    RigidFit<dim>& fit = fits[bodies.of_cell[c]];
+    fit.centroid += volume_of(mesh, c) * centre_of(mesh, c);
+    fit.volume += volume_of(mesh, c);
+  }
+  for (RigidFit<dim>& fit : fits) fit.centroid /= fit.volume;
+  for (const auto& [theirs, ours] : cell_pairs(mesh, space.mesh()))
+  {
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, theirs);
+    for (const Index vertex : space.mesh().cell(ours))
+    {
+      const Point<dim>& x = space.mesh().vertex(vertex);
+      const Point<dim> difference =
+          value_at<dim>(their_space, v, theirs, fem::reference_point(map, x)) -
+          value_at<dim>(space, u, ours, fem::reference_point(mesh::cell_map(space.mesh(), ours), x));
+      fits[bodies.of_cell[theirs]].add(volume_of(space.mesh(), ours), x, difference);
+    }
+  }
   std::vector<RigidDifference> result;
   for (int body = 0; body < bodies.n; ++body)
   {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(dim + n_rotations, dim + n_rotations);
-    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(dim + n_rotations, 1);
-    Point<dim> centroid = Point<dim>::Zero();
-    double volume = 0;
-    for (Index c = 0; c < mesh.n_cells(); ++c)
-      if (bodies.of_cell[c] == body)
-      {
-        centroid += volume_of(mesh, c) * centre_of(mesh, c);
-        volume += volume_of(mesh, c);
-      }
-    centroid /= volume;
-    for (Index c = 0; c < mesh.n_cells(); ++c)
-    {
-      if (bodies.of_cell[c] != body) continue;
-      for (const Index vertex : mesh.cell(c))
-      {
-        Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(dim, dim + n_rotations);
-        motions.leftCols(dim).setIdentity();
-        const Point<dim> x = mesh.vertex(vertex) - centroid;
-        if constexpr (dim == 2)
-          motions.col(2) << -x[1], x[0];
-        else
-          motions.rightCols(3) << 0, x[2], -x[1], -x[2], 0, x[0], x[1], -x[0], 0;
-        Eigen::VectorXd difference(dim);
-        for (int d = 0; d < dim; ++d)
-          difference[d] = v[dim * static_cast<std::size_t>(theirs[vertex]) + d] -
-                          u[dim * static_cast<std::size_t>(ours[vertex]) + d];
-        a += volume_of(mesh, c) * motions.transpose() * motions;
-        b += volume_of(mesh, c) * motions.transpose() * difference;
-      }
-    }
-    const Eigen::MatrixXd motion = solve_regular(a, b);
+    RigidFit<dim>& fit = fits[body];
+    space.mesh().ranks().sum(std::span(fit.a.data(), fit.a.size()));
+    space.mesh().ranks().sum(std::span(fit.b.data(), fit.b.size()));
+    const Eigen::MatrixXd motion = solve_regular(fit.a, fit.b);
     RigidDifference& found = result.emplace_back();
     found.body = body;
     found.translation.assign(motion.data(), motion.data() + dim);
@@ -225,6 +239,30 @@ Judgement judge(const problem::Problem<dim>& problem, const fem::LagrangeSpace<d
   return judgement;
 }
 
+template <int dim>
+std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
+                                        std::span<const Tensor<dim>> stress)
+{
+  const mesh::Mesh<dim>& mesh = their_space.mesh();
+  const auto n_nodes = static_cast<std::size_t>(their_space.basis().n_nodes());
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(their_space.degree());
+  const fem::FacetTabulation<dim> tables = fem::tabulate_on_facets<dim>(their_space.basis(), rule.points);
+  std::vector<Point<dim>> forces(mesh.boundary_names().size(), Point<dim>::Zero());
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  {
+    if (facet.tag < 0) continue;
+    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
+    const fem::Tabulation<dim>& table = tables.on_facet[facet.local];
+    for (int q = 0; q < rule.size(); ++q)
+      for (std::size_t i = 0; i < n_nodes; ++i)
+        forces[facet.tag] += rule.weights[q] * geometry.det() * table.values_at(q)[i] *
+                             stress[n_nodes * facet.cell + i] * geometry.normal;
+  }
+  return forces;
+}
+
+template std::vector<Point<2>> boundary_forces(const fem::LagrangeSpace<2>&, std::span<const Tensor<2>>);
+template std::vector<Point<3>> boundary_forces(const fem::LagrangeSpace<3>&, std::span<const Tensor<3>>);
 template Judgement judge(const problem::Problem<2>&, const fem::LagrangeSpace<2>&, const ForeignSolution<2>&,
                          const fem::LagrangeSpace<2>&, std::span<const double>, double);
 template Judgement judge(const problem::Problem<3>&, const fem::LagrangeSpace<3>&, const ForeignSolution<3>&,

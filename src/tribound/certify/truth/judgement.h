@@ -84,4 +84,9 @@ template <int dim>
                               const fem::LagrangeSpace<dim>& their_space, const ForeignSolution<dim>& theirs,
                               const fem::LagrangeSpace<dim>& space, std::span<const double> u, double bound);
 
+/// Per boundary of the mesh: the integral of s n, the force on the body there that their stress stands for.
+template <int dim>
+[[nodiscard]] std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
+                                                      std::span<const Tensor<dim>> stress);
+
 }  // namespace tribound::certify

@@ -7,7 +7,7 @@
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/quadrature.h"
-#include "tribound/mesh/overlay.h"
+#include "tribound/mesh/partition.h"
 
 namespace tribound::certify
 {
@@ -71,7 +71,7 @@ void for_each_overlap(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& refere
                       const fem::Quadrature<dim>& rule, const Use& use)
 {
   std::vector<Point<dim>> points(rule.size());
-  for (const auto& [cell, reference_cell] : mesh::overlay(mesh, reference_mesh))
+  for (const auto& [cell, reference_cell] : cell_pairs(mesh, reference_mesh))
   {
     const mesh::CellMap<dim> own = mesh::cell_map(mesh, cell);
     const mesh::CellMap<dim> reference = mesh::cell_map(reference_mesh, reference_cell);
@@ -94,6 +94,16 @@ double take_roots(std::vector<double>& squares)
 }
 
 }  // namespace
+
+template <int dim>
+std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& reference)
+{
+  if (!reference.partition()) return mesh::overlay(mesh, reference);
+  std::vector<mesh::CellPair> pairs;
+  for (Index c = 0; c < reference.n_owned_cells(); ++c)
+    pairs.push_back({static_cast<Index>(reference.partition()->names[c].root), c});
+  return pairs;
+}
 
 template <int dim>
 LocalError solution_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
@@ -129,6 +139,11 @@ LocalError solution_error(const problem::Problem<dim>& problem, const fem::Lagra
               weight * contact::sigma<dim>(material, expected[q]).cwiseProduct(expected[q]).sum();
         }
       });
+  const Ranks& ranks = reference_space.mesh().ranks();
+  ranks.sum(error.energy);
+  ranks.sum(error.stress);
+  for (double* number : {&error.own_energy, &error.product, &error.reference_energy})
+    *number = ranks.sum(*number);
   error.global.energy = take_roots(error.energy);
   error.global.stress = take_roots(error.stress);
   return error;
@@ -173,10 +188,13 @@ std::vector<double> stress_error(const problem::Problem<dim>& problem, const fem
                             (difference.squaredNorm() - share * trace * trace) / (2 * material.mu);
         }
       });
+  reference_space.mesh().ranks().sum(error);
   (void)take_roots(error);
   return error;
 }
 
+template std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<2>&, const mesh::Mesh<2>&);
+template std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<3>&, const mesh::Mesh<3>&);
 template LocalError solution_error(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                                    std::span<const double>, const fem::LagrangeSpace<2>&,
                                    std::span<const double>);

@@ -8,6 +8,7 @@
 
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/fem/space.h"
+#include "tribound/mesh/overlay.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::certify
@@ -25,8 +26,16 @@ struct LocalError
   double reference_energy = 0;  ///< a(u_ref, u_ref)
 };
 
+/// mesh::overlay(). Where `reference` is shared out: its own cells, each with the cell of the first mesh,
+/// which `mesh` then is, that it comes from.
+template <int dim>
+[[nodiscard]] std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh,
+                                                     const mesh::Mesh<dim>& reference);
+
 /// Integrated exactly over the common refinement of the two meshes, which bisect() makes from one mesh.
-/// Either degree may be the higher one. Throws std::invalid_argument for other meshes.
+/// Either degree may be the higher one. The mesh of the reference may be shared out between ranks: the other
+/// one is then the first mesh, whole on each of them, as is the result. Throws std::invalid_argument for
+/// other meshes.
 template <int dim>
 [[nodiscard]] LocalError solution_error(const problem::Problem<dim>& problem,
                                         const fem::LagrangeSpace<dim>& space, std::span<const double> u,
