@@ -180,14 +180,15 @@ void CsvReader::read_row()
   if (row.size() != names_.size())
     lines_.fail(fmt::format("the row has {} fields, the header {}", row.size(), names_.size()),
                 "is the file cut off, or a comma the decimal point?");
-  const auto point = [&](const std::array<int, 3>& columns)
-  { return Point<3>(number(row, columns[0]), number(row, columns[1]), number(row, columns[2])); };
-  const Point<3> x = point(x_);
-  if (!x.allFinite()) lines_.fail("the point has no finite coordinates", "x, y and in 3D z in every row");
-  const Point<3> u = point(u_);
-  solution_.mesh.nodes.push_back(x);
+  const auto values = [&](const std::array<int, 3>& columns) {
+    return std::array{number(row, columns[0]), number(row, columns[1]), number(row, columns[2])};
+  };
+  const auto [x, y, z] = values(x_);
+  if (!std::isfinite(x + y + z))
+    lines_.fail("the point has no finite coordinates", "x, y and in 3D z in every row");
+  solution_.mesh.nodes.emplace_back(x, y, z);
   solution_.mesh.node_numbers.push_back(lines_.number());
-  solution_.displacement.push_back(displacement_of({u.data(), 3}));
+  solution_.displacement.push_back(displacement_of(values(u_)));
   if (!has_stress_) return;
   StressValues stress{};
   for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = number(row, s_[i]);

@@ -156,8 +156,7 @@ void GmshSolution::read_displacement(const Data& data, const FieldName& field)
          "a view of nodes ($NodeData); elements can have stresses");
   const std::vector<double> values =
       data.kind == "NodeData" ? of_nodes(data, field) : joined(of_elements(data, field), field);
-  for (std::size_t i = 0; i < values.size(); i += field.n_components)
-    solution_.displacement.push_back(displacement_of(std::span(values).subspan(i, field.n_components)));
+  solution_.displacement = displacements_of(values, field);
 }
 
 void GmshSolution::read_stress(const gmsh::View& view, const FieldName& field, int step)

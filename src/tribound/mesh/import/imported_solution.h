@@ -41,9 +41,10 @@ struct SolutionChoice
 /// z; columns between commas, semicolons, tabs or blanks; comments after '#'. `field` and `stress` replace
 /// the letters u and s.
 ///
-/// VTK: arrays of points. The stress has 9 components (tensors by rows: the symmetric part is taken), 6 (xx,
-/// yy, zz, xy, yz, xz), 4 (xx, yy, zz, xy; or where the two in the middle are equal everywhere, a tensor of
-/// 2D by rows) or 3 (xx, yy, xy). Where pieces have the same point, it has the values of the first.
+/// VTK: arrays of points. The components of the stress are those that their names end with, such as SIXX, if
+/// the file names all. Else they are 9 (tensors by rows: the symmetric part is taken), 6 (xx, yy, zz, xy, yz,
+/// xz), 4 (xx, yy, zz, xy; or where the two in the middle are equal everywhere, a tensor of 2D by rows) or 3
+/// (xx, yy, xy). Where pieces have the same point, it has the values of the first.
 ///
 /// .msh: views by name, of nodes, of nodes of elements, or (only stress) of elements. Displacements have 2 or
 /// 3 components, stresses those of VTK. Steps are counted as in the file, from 0.

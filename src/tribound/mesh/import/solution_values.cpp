@@ -18,8 +18,8 @@ namespace
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// In small letters, the surest first; of FEniCSx, MFEM, GetFEM, deal.II, CalculiX's converters, Salome.
-constexpr std::array<std::string_view, 10> usual_displacements = {
-    "displacement", "displacements", "u", "disp", "depl", "deplacement", "uh", "u_h", "solution", "f"};
+constexpr std::array<std::string_view, 9> usual_displacements = {
+    "displacement", "displacements", "u", "disp", "depl", "deplacement", "uh", "u_h", "solution"};
 constexpr std::array<std::string_view, 12> usual_stresses = {
     "stress",        "stresses",  "sigma",     "s",         "sig",     "cauchy_stress",
     "cauchy stress", "sief_noeu", "sigm_noeu", "sief_elno", "sigma_h", "stress tensor"};
@@ -41,14 +41,28 @@ std::string described(std::span<const FieldName> fields, std::string_view kind)
   return fmt::format("the file has the {} {}", kind, fmt::join(words, ", "));
 }
 
-bool may_be_stress(std::size_t n_components)
+bool may_be_stress(const FieldName& field)
 {
-  return n_components == 3 || n_components == 4 || n_components == 6 || n_components == 9;
+  const std::size_t n = field.n_components;
+  return n == 3 || n == 4 || n == 6 || n == 9;
 }
 
-bool may_be_displacement(std::size_t n_components)
+/// Which components are the displacement; none: it has none. Code_aster has forces of contact beside it.
+std::vector<std::size_t> displacement_places(const FieldName& field)
 {
-  return n_components == 2 || n_components == 3;
+  if (field.n_components == 2) return {0, 1};
+  if (field.n_components == 3) return {0, 1, 2};
+  std::vector<std::size_t> places;
+  for (const std::string_view name : {"dx", "dy", "dz"})
+    for (std::size_t i = 0; i < field.component_names.size(); ++i)
+      if (small_letters(field.component_names[i]) == name) places.push_back(i);
+  const bool has_space = places.size() == 2 || places.size() == 3;
+  return has_space ? places : std::vector<std::size_t>{};
+}
+
+bool may_be_displacement(const FieldName& field)
+{
+  return !displacement_places(field).empty();
 }
 
 std::optional<std::size_t> named(std::span<const FieldName> fields, const std::string& wanted)
@@ -64,7 +78,7 @@ std::optional<std::size_t> usual_one(std::span<const FieldName> fields,
 {
   for (const std::string_view usual : names)
     for (std::size_t i = 0; i < fields.size(); ++i)
-      if (is_usual(fields[i].name, usual) && may_be(fields[i].n_components)) return i;
+      if (is_usual(fields[i].name, usual) && may_be(fields[i])) return i;
   return {};
 }
 
@@ -88,15 +102,44 @@ StressValues from_tensor(std::span<const double> t, double& asymmetry, double& s
   return {t[0], t[4], t[8], (t[1] + t[3]) / 2, (t[5] + t[7]) / 2, (t[2] + t[6]) / 2};
 }
 
+/// The places in StressValues of components such as "SIXX" and "S_yz", if all are named so, each once.
+std::vector<std::size_t> places_by_name(const FieldName& field)
+{
+  constexpr std::array<std::string_view, 9> ends = {"xx", "yy", "zz", "xy", "yz", "xz", "yx", "zy", "zx"};
+  std::vector<std::size_t> places;
+  for (const std::string& name : field.component_names)
+  {
+    const std::string small = small_letters(name);
+    const auto end = std::ranges::find_if(ends, [&](std::string_view e) { return small.ends_with(e); });
+    const auto place = static_cast<std::size_t>(end - ends.begin());
+    if (place == ends.size()) return {};
+    places.push_back(place < 6 ? place : place - 3);
+    if (std::ranges::count(places, places.back()) > 1) return {};
+  }
+  return places;
+}
+
+/// In the order of the file, or the usual one for this number.
+StressValues from_components(std::span<const double> s, std::span<const std::size_t> places)
+{
+  StressValues stress{};
+  if (!places.empty())
+    for (std::size_t i = 0; i < s.size(); ++i) stress[places[i]] = s[i];
+  else if (s.size() == 3)
+    stress = {s[0], s[1], 0, s[2], 0, 0};
+  else
+    std::ranges::copy(s, stress.begin());
+  return stress;
+}
+
 }  // namespace
 
 const Point<3> no_displacement = Point<3>::Constant(nan);
 const StressValues no_stress = {nan, nan, nan, nan, nan, nan};
 
-Point<3> displacement_of(std::span<const double> components)
+Point<3> displacement_of(const std::array<double, 3>& components)
 {
-  Point<3> result = Point<3>::Zero();
-  for (std::size_t i = 0; i < components.size(); ++i) result[static_cast<Eigen::Index>(i)] = components[i];
+  const Point<3> result(components[0], components[1], components[2]);
   return result.allFinite() ? result : no_displacement;
 }
 
@@ -119,7 +162,7 @@ std::size_t choose_displacement(std::span<const FieldName> fields, const std::st
         wanted.empty()
             ? "usual names are displacement, u, disp and DEPL, with 2 or 3 components; others by --field"
             : "--field is one of them, with 2 or 3 components");
-  if (!may_be_displacement(fields[*found].n_components))
+  if (!may_be_displacement(fields[*found]))
     throw InputError(where,
                      fmt::format("\"{}\" has {} components, and cannot be a displacement",
                                  fields[*found].name, fields[*found].n_components),
@@ -135,7 +178,7 @@ std::optional<std::size_t> choose_stress(std::span<const FieldName> fields, cons
   if (!found)
     throw InputError(where, fmt::format("there is no stress \"{}\": {}", wanted, described(fields, kind)),
                      "--stress is one of them, with 3, 4, 6 or 9 components");
-  if (!may_be_stress(fields[*found].n_components))
+  if (!may_be_stress(fields[*found]))
     throw InputError(
         where,
         fmt::format("\"{}\" has {} components, and cannot be a stress", wanted, fields[*found].n_components),
@@ -143,11 +186,25 @@ std::optional<std::size_t> choose_stress(std::span<const FieldName> fields, cons
   return found;
 }
 
+std::vector<Point<3>> displacements_of(std::span<const double> values, const FieldName& field)
+{
+  const std::vector<std::size_t> places = displacement_places(field);
+  std::vector<Point<3>> result;
+  for (std::size_t begin = 0; begin < values.size(); begin += field.n_components)
+  {
+    std::array<double, 3> components{};
+    for (std::size_t i = 0; i < places.size(); ++i) components[i] = values[begin + places[i]];
+    result.push_back(displacement_of(components));
+  }
+  return result;
+}
+
 std::vector<StressValues> stresses_of(std::span<const double> values, const FieldName& field,
                                       const Where& where, std::vector<std::string>& notes)
 {
   const std::size_t n = field.n_components;
-  const bool is_plane_tensor = n == 4 && are_plane_tensors(values);
+  const std::vector<std::size_t> places = places_by_name(field);
+  const bool is_plane_tensor = n == 4 && places.empty() && are_plane_tensors(values);
   double asymmetry = 0;
   double size = 0;
   std::vector<StressValues> result;
@@ -156,17 +213,15 @@ std::vector<StressValues> stresses_of(std::span<const double> values, const Fiel
   {
     const std::span<const double> s = values.subspan(i, n);
     result.push_back(finite_stress(n == 9            ? from_tensor(s, asymmetry, size)
-                                   : n == 6          ? StressValues{s[0], s[1], s[2], s[3], s[4], s[5]}
-                                   : n == 3          ? StressValues{s[0], s[1], 0, s[2], 0, 0}
-                                   : is_plane_tensor ? StressValues{s[0], s[3], 0, (s[1] + s[2]) / 2, 0, 0}
-                                                     : StressValues{s[0], s[1], s[2], s[3], 0, 0}));
+                                   : is_plane_tensor ? StressValues{s[0], s[3], 0, s[1], 0, 0}
+                                                     : from_components(s, places)));
   }
   constexpr double round_off = 1e-5;  // of numbers in single precision
   if (asymmetry > round_off * size)
     notes.push_back(
         fmt::format("{}: the stress \"{}\" is not symmetric, by up to {:.3g}: its symmetric part is taken",
                     where.file, field.name, asymmetry));
-  if (n == 4)
+  if (n == 4 && places.empty())
     notes.push_back(fmt::format("{}: the 4 components of \"{}\" are taken as {}", where.file, field.name,
                                 is_plane_tensor ? "xx, xy, yx, yy" : "xx, yy, zz, xy"));
   return result;

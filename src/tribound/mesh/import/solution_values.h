@@ -19,7 +19,7 @@ namespace tribound::mesh
 using StressValues = std::array<double, 6>;
 
 /// NaN in all components if one is no finite number.
-[[nodiscard]] Point<3> displacement_of(std::span<const double> components);
+[[nodiscard]] Point<3> displacement_of(const std::array<double, 3>& components);
 [[nodiscard]] StressValues finite_stress(const StressValues& stress);
 
 extern const Point<3> no_displacement;
@@ -30,6 +30,7 @@ struct FieldName
 {
   std::string name;
   std::size_t n_components;
+  std::vector<std::string> component_names{};  ///< one for each, or none
 };
 
 /// The place of the displacement in `fields`: that with the name `wanted`, or if it is empty the first usual
@@ -40,6 +41,10 @@ struct FieldName
 [[nodiscard]] std::optional<std::size_t> choose_stress(std::span<const FieldName> fields,
                                                        const std::string& wanted, const Where& where,
                                                        std::string_view kind);
+
+/// Displacements of 2 or 3 components each, or of DX, DY, DZ where components of other kinds are between
+/// them.
+[[nodiscard]] std::vector<Point<3>> displacements_of(std::span<const double> values, const FieldName& field);
 
 /// Stresses of 3, 4, 6 or 9 components each, in the orders of imported_solution.h. What is not evident goes
 /// to `notes`.

@@ -59,7 +59,8 @@ struct VtkArray
   VtkType type = VtkType::other;
   std::size_t n_components = 1;
   VtkCoding coding{};
-  std::string_view data{};  ///< begins with the array; may go on behind it
+  std::string_view data{};                     ///< begins with the array; may go on behind it
+  std::vector<std::string> component_names{};  ///< one for each, or none
 };
 
 /// The array with the name; nullptr if there is none.

@@ -25,7 +25,7 @@ std::vector<FieldName> fields_of(const VtkFile& file)
           const VtkArray* same = find(piece.point_data, array.name);
           return same && same->type != VtkType::other && same->n_components == array.n_components;
         });
-    if (is_everywhere) fields.push_back({array.name, array.n_components});
+    if (is_everywhere) fields.push_back({array.name, array.n_components, array.component_names});
   }
   return fields;
 }
@@ -63,8 +63,7 @@ ImportedSolution read_vtk_solution(const std::filesystem::path& path, const Solu
   const std::vector<FieldName> fields = fields_of(file);
   const FieldName& field = fields[choose_displacement(fields, choice.field, where, "point arrays")];
   const std::vector<double> values = values_at(file, field, solution.mesh.node_numbers);
-  for (std::size_t i = 0; i < values.size(); i += field.n_components)
-    solution.displacement.push_back(displacement_of(std::span(values).subspan(i, field.n_components)));
+  solution.displacement = displacements_of(values, field);
   solution.description = fmt::format("VTK's point array \"{}\"", field.name);
   if (const auto stress = choose_stress(fields, choice.stress, where, "point arrays"))
   {

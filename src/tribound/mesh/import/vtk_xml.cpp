@@ -50,6 +50,7 @@ class VtkXml
   void read_piece(const pugi::xml_node& node);
   void read_parts(const pugi::xml_node& grid);
   [[nodiscard]] std::size_t count(const pugi::xml_node& node, const char* attribute) const;
+  [[nodiscard]] static std::vector<std::string> component_names_of(const pugi::xml_node& node, std::size_t n);
   [[nodiscard]] VtkArray array_of(const pugi::xml_node& node) const;
   [[nodiscard]] std::vector<VtkArray> arrays_of(const pugi::xml_node& node) const;
   [[nodiscard]] VtkArray required(const pugi::xml_node& node, const std::string& name) const;
@@ -131,6 +132,18 @@ std::size_t VtkXml::count(const pugi::xml_node& node, const char* attribute) con
   return static_cast<std::size_t>(*number);
 }
 
+std::vector<std::string> VtkXml::component_names_of(const pugi::xml_node& node, std::size_t n)
+{
+  std::vector<std::string> names;
+  while (names.size() < n)
+  {
+    const auto name = node.attribute(fmt::format("ComponentName{}", names.size()).c_str());
+    if (!name) return {};
+    names.emplace_back(name.value());
+  }
+  return names;
+}
+
 VtkArray VtkXml::array_of(const pugi::xml_node& node) const
 {
   VtkArray array{.name = node.attribute("Name").value(), .coding = coding_};
@@ -138,6 +151,7 @@ VtkArray VtkXml::array_of(const pugi::xml_node& node) const
                                        &std::pair<std::string_view, VtkType>::first);
   if (known != xml_types.end()) array.type = known->second;
   array.n_components = std::max(1U, node.attribute("NumberOfComponents").as_uint(1));
+  array.component_names = component_names_of(node, array.n_components);
   const std::string_view format = node.attribute("format").value();
   if (format == "appended")
   {
