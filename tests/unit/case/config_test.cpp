@@ -77,6 +77,9 @@ max_reference_dofs = 1000
 dual_norm_dofs = 0
 figures = false
 
+[judge]
+sharpness = 0.25
+
 [output]
 directory = "results"
 vtu = false
@@ -117,6 +120,7 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.study.max_reference_dofs, 1000);
   EXPECT_EQ(config.study.dual_norm_dofs, 0);
   EXPECT_FALSE(config.study.figures);
+  EXPECT_EQ(config.judge.sharpness, 0.25);
   EXPECT_EQ(config.output.directory, "results");
   EXPECT_FALSE(config.output.vtu);
   EXPECT_EQ(config.output.levels, case_file::FieldLevels::all);

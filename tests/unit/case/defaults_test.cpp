@@ -151,6 +151,8 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"study.dual_norm_dofs",
        [](const case_file::Config& c, const Row&) { return with_spaces(c.study.dual_norm_dofs); }},
       {"study.figures", [=](const case_file::Config& c, const Row&) { return truth(c.study.figures); }},
+      {"judge.sharpness",
+       [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.judge.sharpness); }},
       {"not_covered",
        [](const case_file::Config& c, const Row&) { return c.not_covered.empty() ? "none" : "given"; }},
       {"output.directory",
