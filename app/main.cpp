@@ -65,6 +65,7 @@ constexpr const char* help_footer = R"(Examples:
   tribound run block.toml                     solve it, write out/block
   tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
   tribound sweep block.toml 'degree=[1,2]' boundary.bottom.contact.coefficient=0.1:0.8:8 --jobs 2
+  tribound judge block.toml --solution theirs.vtu --accept 0.05
   tribound COMMAND --help                     the options of a command
 
 Exit codes:
@@ -72,6 +73,7 @@ Exit codes:
   1  bad input; the message names the file, the key, what is wrong and what would be right
   2  failed: no convergence, a singular matrix, an identity violated, a full disk
   3  budget used up or interrupted: the certificate is valid, the tolerance is not reached
+  4  judge: the error of the solution is larger than --accept
 
 The manual: man tribound. The guide, with case-format.md, output.md and troubleshooting.md:
   )";

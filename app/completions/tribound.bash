@@ -3,7 +3,7 @@
 _tribound()
 {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands="init import mesh info schema check run sweep verify study" command= word candidates=
+  local commands="init import mesh info schema check run sweep judge verify study" command= word candidates=
 
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if [[ " $commands " == *" $word "* ]]; then
@@ -21,9 +21,13 @@ _tribound()
       mapfile -t COMPREPLY < <(compgen -f -X '!*.csv' -- "$current"; compgen -d -- "$current")
       compopt -o filenames 2>/dev/null
       return ;;
+    --solution)
+      mapfile -t COMPREPLY < <(compgen -f -- "$current" | grep -E '[.](csv|msh|vtu|pvtu|vtk|frd)$'; compgen -d -- "$current")
+      compopt -o filenames 2>/dev/null
+      return ;;
     --jobs) candidates="1 2 4 8" ;;
     --refinements) candidates="1 2 3 4 5" ;;
-    --set | --accept | --size | --merge | --region-array | --boundaries) return ;;
+    --set | --accept | --field | --stress | --step | --load-step | --number | --size | --merge | --region-array | --boundaries) return ;;
     *)
       case $command in
         "") candidates="$commands --help --version" ;;
@@ -34,12 +38,13 @@ _tribound()
         check) candidates="--set --quiet --json --help" ;;
         run) candidates="--set --quiet --restart --help" ;;
         study) candidates="--set --quiet --help" ;;
+        judge) candidates="--set --quiet --solution --field --stress --step --load-step --number --accept --help" ;;
         sweep) candidates="--set --table --jobs --resume --help" ;;
         verify) candidates="--set --quiet --refinements --help" ;;
       esac ;;
   esac
 
-  if [[ $command =~ ^(check|run|sweep|verify|study)$ && $current != -* && ! $previous =~ ^--(refinements|jobs)$ ]]; then
+  if [[ $command =~ ^(check|run|sweep|judge|verify|study)$ && $current != -* && ! $previous =~ ^--(refinements|jobs)$ ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current")
     compopt -o filenames 2>/dev/null
   elif [[ $command == import && $current != -* ]]; then

@@ -83,7 +83,7 @@ def manual_differences(program, file, page):
     for option in options(program):
         if option not in section(text, "OPTIONS"):
             yield f"the manual has no option {option}"
-    for code in range(4):
+    for code in range(5):
         if f"\n.B {code}\n" not in section(text, "EXIT STATUS"):
             yield f"the manual has no exit code {code}"
     if shutil.which("man"):
@@ -124,13 +124,15 @@ def expected_completions(program):
         "tribound verify --refinements ": list("12345"),
         "tribound run --set ": [],
         "tribound sweep --jobs ": list("1248"),
+        "tribound judge --solution ": ["folder", "theirs.vtu"],
+        "tribound judge --number ": [],
     }
     for command in commands(program):
         expected[f"tribound {command} --"] = [o for o in options(program, command) if o.startswith("--")]
-    for command in ["check", "run", "sweep", "verify", "study"]:
+    for command in ["check", "run", "sweep", "judge", "verify", "study"]:
         expected[f"tribound {command} ca"] = ["case.toml"]
     expected["tribound mesh ca"] = ["case.toml", "cave.txt"]
-    for command in ["check", "run", "verify", "study"]:
+    for command in ["check", "run", "judge", "verify", "study"]:
         expected[f"tribound {command} --quiet folder/"] = ["folder/inner.toml"]
     return expected
 
@@ -139,7 +141,7 @@ def completion_differences(program, shell, completed, file):
     expected = expected_completions(program)
     with tempfile.TemporaryDirectory() as directory:
         (Path(directory) / "folder").mkdir()
-        for name in ["case.toml", "cave.txt", "folder/inner.toml"]:
+        for name in ["case.toml", "cave.txt", "theirs.vtu", "folder/inner.toml"]:
             (Path(directory) / name).touch()
         found = completed(file, directory, expected)
     for line, words in expected.items():
