@@ -2,6 +2,7 @@
 
 #include "tribound/certify/truth/judgement.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "support/dimensions.h"
 #include "support/discrete_problem.h"
@@ -127,6 +129,24 @@ TYPED_TEST(JudgementOf, SimplicesGiveTheirFunction)
     EXPECT_TRUE(found.is_exact);
     const fem::LagrangeSpace<dim> space(c.mesh, degree);
     EXPECT_LT(norm(sum(found.u, -1, values<dim>(space, quadratic<dim>))), 1e-14);
+  }
+}
+
+/// As in files of CalculiX.
+TYPED_TEST(JudgementOf, NodesOfSixDigitsAreFound)
+{
+  constexpr int dim = TypeParam::value;
+  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  for (const bool has_elements : {true, false})
+  {
+    mesh::ImportedSolution theirs = exported<dim>(c.mesh, 2, 7);
+    if (!has_elements) theirs.mesh.cells.clear();
+    for (Point<3>& x : theirs.mesh.nodes)
+      for (double& coordinate : x) coordinate = std::stod(fmt::format("{:.5e}", coordinate));
+    const certify::ForeignSolution<dim> found = certify::foreign_solution<dim>(theirs, c.mesh);
+    EXPECT_EQ(found.degree, 2);
+    EXPECT_GT(found.node_distance, 1e-7);
+    EXPECT_LT(norm(sum(found.u, -1, values<dim>({c.mesh, 2}, quadratic<dim>))), 1e-14);
   }
 }
 
@@ -280,6 +300,14 @@ TYPED_TEST(JudgementOf, OtherMeshesAreNamed)
                     for (Point<3>& x : other.mesh.nodes) x[0] += 1;
                   }),
               HasSubstr("shifted by (1"));
+  EXPECT_THAT(said(
+                  [](auto& other)
+                  {
+                    std::vector<Point<3>>& nodes = other.mesh.nodes;
+                    const std::vector<Index>& first = other.mesh.cells[0].nodes;
+                    nodes[first[0]] = nodes[first[1]];
+                  }),
+              HasSubstr("does not tell two nodes at"));
   EXPECT_THAT(said([](auto& other) { other.displacement[3][1] = std::numeric_limits<double>::quiet_NaN(); }),
               HasSubstr("has no displacement at node 4"));
   EXPECT_THAT(said([](auto& other) { other.mesh.cells[0].nodes.resize(dim + 1); }),

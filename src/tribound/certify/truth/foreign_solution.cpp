@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -25,7 +24,9 @@ namespace tribound::certify
 namespace
 {
 
-constexpr double same_place = 1e-6;  // of the diagonal of the mesh
+/// Distances of nodes that are one, as parts of the size of the mesh. The second is for files with six
+/// digits.
+constexpr std::array same_place = {1e-6, 1e-5};
 
 /// Finds points by their coordinates: those in a cell of a grid and in its neighbours.
 template <int dim>
@@ -112,9 +113,8 @@ class Carrier
       : theirs_(theirs), mesh_(mesh), where_(theirs.mesh.source)
   {
     for (const Point<dim>& x : mesh.vertices()) box_.add(x);
-    tolerance_ = same_place * (box_.upper - box_.lower).norm();
     for (const Point<3>& x : theirs.mesh.nodes) nodes_.push_back(in_plane<dim>(x));
-    grid_.emplace(nodes_, tolerance_);
+    choose_tolerance();
   }
 
   ForeignSolution<dim> carry()
@@ -125,6 +125,32 @@ class Carrier
   }
 
  private:
+  /// The smallest with which every vertex is found. Digits that are lost count by the largest coordinate.
+  void choose_tolerance()
+  {
+    const double size = std::max({(box_.upper - box_.lower).norm(), box_.upper.cwiseAbs().maxCoeff(),
+                                  box_.lower.cwiseAbs().maxCoeff()});
+    for (const double part : same_place)
+    {
+      tolerance_ = part * size;
+      grid_.emplace(nodes_, tolerance_);
+      if (std::ranges::none_of(mesh_.vertices(), [&](const auto& x) { return grid_->near(x).empty(); }))
+        return;
+    }
+  }
+
+  [[nodiscard]] Index nearest(std::span<const Index> nodes, const Point<dim>& x) const
+  {
+    return *std::ranges::min_element(nodes, {}, [&](Index i) { return (nodes_[i] - x).norm(); });
+  }
+
+  [[noreturn]] void fail_digits(const Point<dim>& x) const
+  {
+    throw InputError(where_,
+                     fmt::format("does not tell two nodes at ({:.9g}) from each other", fmt::join(x, ", ")),
+                     "coordinates with more digits");
+  }
+
   // ---- with elements
 
   void carry_elements()
@@ -175,7 +201,12 @@ class Carrier
                          "the solution on the mesh of the case");
       for (std::size_t e = 0; e < block.size(); ++e, entry += block.type.n_nodes)
         for (int corner = 0; corner < table.n_corners; ++corner)
-          elements_of_[clusters_[block.element(e)[corner]]].push_back({b, e, entry});
+        {
+          std::vector<Element>& elements = elements_of_[clusters_[block.element(e)[corner]]];
+          if (!elements.empty() && elements.back().block == b && elements.back().number == e)
+            fail_digits(nodes_[block.element(e)[corner]]);
+          elements.push_back({b, e, entry});
+        }
     }
   }
 
@@ -239,11 +270,12 @@ class Carrier
 
   Index cluster_at(Index vertex)
   {
-    const std::vector<Index> found = grid_->near(mesh_.vertex(vertex));
-    if (found.empty()) fail_missing(mesh_.vertex(vertex));
-    result_.node_distance =
-        std::max(result_.node_distance, (nodes_[found.front()] - mesh_.vertex(vertex)).norm());
-    return clusters_[found.front()];
+    const Point<dim>& x = mesh_.vertex(vertex);
+    const std::vector<Index> found = grid_->near(x);
+    if (found.empty()) fail_missing(x);
+    const Index node = nearest(found, x);
+    result_.node_distance = std::max(result_.node_distance, (nodes_[node] - x).norm());
+    return clusters_[node];
   }
 
   [[nodiscard]] Terms terms_of(const Place& place, const std::array<int, dim + 1>& node) const
@@ -280,21 +312,24 @@ class Carrier
   {
     const std::vector<Point<dim>> places = space.node_points();
     std::vector<Index> rows(places.size());
-    std::map<Index, std::size_t> users;
     for (std::size_t n = 0; n < places.size(); ++n)
     {
       const std::vector<Index> found = grid_->near(places[n]);
       if (found.empty()) return false;
-      rows[n] = found.front();
-      ++users[rows[n]];
-      result_.node_distance = std::max(result_.node_distance, (nodes_[found.front()] - places[n]).norm());
+      rows[n] = nearest(found, places[n]);
+      result_.node_distance = std::max(result_.node_distance, (nodes_[rows[n]] - places[n]).norm());
       require_one_value(found);
     }
     result_.degree = space.degree();
     start(space);
     for (Index c = 0; c < mesh_.n_cells(); ++c)
       for (int i = 0; i < space.basis().n_nodes(); ++i)
-        set(space, c, i, {{rows[space.cell_nodes(c)[i]], 0, 1.0}});
+      {
+        const Index row = rows[space.cell_nodes(c)[i]];
+        for (int j = 0; j < i; ++j)
+          if (rows[space.cell_nodes(c)[j]] == row) fail_digits(nodes_[row]);
+        set(space, c, i, {{row, 0, 1.0}});
+      }
     return true;
   }
 
@@ -306,7 +341,7 @@ class Carrier
         throw InputError(where_,
                          fmt::format("has two rows at ({:.6g}), and does not say to which body they belong",
                                      fmt::join(nodes_[row], ", ")),
-                         "a format with elements, such as .vtu");
+                         "a format with elements, such as .vtu, or coordinates with more digits");
   }
 
   // ---- both

@@ -26,11 +26,11 @@ struct ForeignSolution
   std::string read_as{};              ///< in words
 };
 
-/// Finds the nodes by their coordinates, to 1e-6 of the size of the mesh, and where bodies touch by the
-/// elements that they belong to. On simplices with straight edges it is their function. On others it is the
-/// function in P^2 on the cells into which the elements were cut that takes their values; at the middles of
-/// edges that cut an element, those of its shape functions. Points without elements are in P^q for the
-/// largest q whose nodes are all among them.
+/// Finds the nodes by their coordinates, to 1e-6 of the size of the mesh, or 1e-5 where vertices are missing
+/// else, and where bodies touch by the elements that they belong to. On simplices with straight edges it is
+/// their function. On others it is the function in P^2 on the cells into which the elements were cut that
+/// takes their values; at the middles of edges that cut an element, those of its shape functions. Points
+/// without elements are in P^q for the largest q whose nodes are all among them.
 ///
 /// Throws InputError for another mesh (tells whether it is larger or shifted), a node without a value or with
 /// two, points that may belong to either of two bodies.
