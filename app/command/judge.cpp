@@ -11,7 +11,10 @@
 #include "app/command/with_case.h"
 #include "app/console/console.h"
 #include "app/console/text.h"
+#include "app/page/judgement_page.h"
+#include "app/page/page_template.h"
 #include "app/result/judgement.h"
+#include "app/shared_file.h"
 #include "tribound/adapt/error_bars.h"
 #include "tribound/case/quantity_reader.h"
 #include "tribound/case/resolve.h"
@@ -20,6 +23,7 @@
 #include "tribound/contact/nitsche/penalty.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
+#include "tribound/io/file/json.h"
 #include "tribound/io/record/error_bars.h"
 #include "tribound/mesh/import/imported_solution.h"
 
@@ -79,9 +83,11 @@ class Judge
   }
 
   /// The level, or the load step, against theirs.
-  void operator()(const app::KeptLevel<dim>& level, const io::LevelRecord& record)
+  void operator()(const std::shared_ptr<const KeptLevel<dim>>& kept, const io::LevelRecord& record)
   {
+    const KeptLevel<dim>& level = *kept;
     if (level.t && request_.load_step && *request_.load_step != level.number) return;
+    judged_ = kept;
     if (level.t) record_.load_step = level.number;
     record_.cells = static_cast<long>(level.discrete->mesh.n_global_cells());
     const std::optional<certify::EnergyBound>& energy = level.level.energy;
@@ -97,11 +103,20 @@ class Judge
 
   [[nodiscard]] JudgementRecord& record() { return record_; }
 
-  /// judgement.json, judged_cells.csv, and their displacement with the distances as judged.vtu.
-  void write(const std::filesystem::path& directory) const
+  /// judgement.json, judgement.html, judged_cells.csv, and their displacement with the distances as
+  /// judged.vtu.
+  void write(const case_file::OutputConfig& output) const
   {
-    io::write_file(directory / "judgement.json", judgement_json(record_));
-    if (!record_.judgement) return;
+    const std::filesystem::path& directory = output.directory;
+    io::write_file(directory / "judgement.json", io::json_text(judgement_object(record_)));
+    if (record_.judgement) write_fields(directory);
+    const PageTemplate page(output.report ? find_shared_file("report.html") : std::filesystem::path{});
+    if (!page.empty()) write_judgement_page(page, directory, record_, page_surfaces());
+  }
+
+ private:
+  void write_fields(const std::filesystem::path& directory) const
+  {
     const certify::Judgement& judgement = *record_.judgement;
     io::write_file(directory / "judged_cells.csv", judged_cells_csv<dim>(mesh_, judgement.displacement));
     std::vector<io::CellField> fields = {{"distance", judgement.displacement.cells}};
@@ -109,7 +124,19 @@ class Judge
     io::write_level_vtu<dim>({.own = directory / "judged.vtu"}, {}, problem_, *space_, theirs_.u, fields);
   }
 
- private:
+  [[nodiscard]] io::Json page_surfaces() const
+  {
+    if (!record_.judgement || n_processes() > 1)
+      return nullptr;  // of a mesh that is shared out there is a part
+    return judged_surfaces<dim>(form(), theirs_, *record_.judgement, judged_->discrete->space,
+                                judged_->level.u);
+  }
+
+  [[nodiscard]] contact::NitscheForm<dim> form() const
+  {
+    return {problem_, *space_, contact::default_gamma0(theirs_.degree)};
+  }
+
   void read()
   {
     const mesh::ImportedSolution solution =
@@ -129,7 +156,7 @@ class Judge
   /// Their numbers, and how far their bodies penetrate.
   void measure(const case_file::Config& config)
   {
-    const contact::NitscheForm<dim> form(problem_, *space_, contact::default_gamma0(theirs_.degree));
+    const contact::NitscheForm<dim> form = this->form();
     const certify::EnergyBound values =
         certify::no_energy_bound<dim>(form, theirs_.u, quantities_, "not yet judged");
     for (std::size_t i = 0; i < quantities_.size(); ++i)
@@ -179,6 +206,7 @@ class Judge
   std::vector<problem::Quantity<dim>> quantities_;
   certify::ForeignSolution<dim> theirs_{};
   std::optional<fem::LagrangeSpace<dim>> space_{};
+  std::shared_ptr<const KeptLevel<dim>> judged_{};  ///< the last level that was judged on
   JudgementRecord record_{};
 };
 
@@ -194,16 +222,17 @@ ExitCode judge(const JudgeRequest& request, const case_file::Config& config, mes
   Judge<dim> judge(request, config, std::move(mesh));
   RunHooks hooks{.change = prepare_to_judge, .is_part = true};
   LoopHooks<dim>& of_dimension = hooks.of<dim>();
-  of_dimension.level = [&](const auto& level, const io::LevelRecord& record) { judge(*level, record); };
+  of_dimension.level = [&](const auto& level, const io::LevelRecord& record) { judge(level, record); };
   if (!config.history)
     of_dimension.stop = [&](const auto&)
     { return judge.record().is_sharp() ? "their solution is judged as sharply as asked for" : ""; };
   const ExitCode code = run(request, {}, hooks);
-  const std::filesystem::path directory = config.output.directory / "judge";
-  if (is_first_process() && std::filesystem::exists(directory))
+  case_file::OutputConfig output = config.output;
+  output.directory /= "judge";
+  if (is_first_process() && std::filesystem::exists(output.directory))
   {
-    judge.write(directory);
-    print(judgement_text(judge.record(), directory.string()));
+    judge.write(output);
+    print(judgement_text(judge.record(), output.directory.string()));
   }
   return code == ExitCode::success || code == ExitCode::budget_used_up ? exit_code(judge.record().status())
                                                                        : code;

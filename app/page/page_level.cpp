@@ -74,29 +74,33 @@ io::Json region_json(const Surface& surface, const mesh::Mesh<dim>& mesh)
 }  // namespace
 
 template <int dim>
-PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
-                     const adapt::CertifiedLevel<dim>& level, const PageLimits& limits)
+io::Json surface_json(const contact::NitscheForm<dim>& form, const Surface& surface)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
-  const Surface surface = sample_surface(form, level.u, level.stress, limits);
-  PageLevel result{number,
-                   surface.n_triangles(),
-                   {{"level", number},
-                    {"dimension", dim},
-                    {"cells", mesh.n_global_cells()},
-                    {"subdivision", surface.subdivision},
-                    {"merged_below", surface.merged_below},
-                    {"points", pack_linear(surface.points, point_bits, dim)},
-                    {"displacement", pack_linear(surface.displacement, displacement_bits, dim)},
-                    {"faces", pack_integers(surface.faces, surface.n_face_points())},
-                    {"eta", eta_json(surface, level.estimate)},
-                    {"stress", stress_json(surface.stress)}}};
-  io::Json& json = result.json;
+  io::Json json{{"dimension", dim},
+                {"cells", mesh.n_global_cells()},
+                {"subdivision", surface.subdivision},
+                {"merged_below", surface.merged_below},
+                {"points", pack_linear(surface.points, point_bits, dim)},
+                {"displacement", pack_linear(surface.displacement, displacement_bits, dim)},
+                {"faces", pack_integers(surface.faces, surface.n_face_points())},
+                {"stress", stress_json(surface.stress)}};
   if (mesh.region_names().size() > 1) json["region"] = region_json(surface, mesh);
   if (!surface.bodies.empty() && std::ranges::max(surface.bodies) > 0)
     json["body"] = pack_integers(surface.bodies);
   if constexpr (dim == 2) json["out_of_plane"] = out_of_plane_json(form.problem(), mesh);
-  json.update(page_contact(form, level.u, surface, limits));
+  return json;
+}
+
+template <int dim>
+PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
+                     const adapt::CertifiedLevel<dim>& level, const PageLimits& limits)
+{
+  const Surface surface = sample_surface(form, level.u, level.stress, limits);
+  PageLevel result{number, surface.n_triangles(), surface_json(form, surface)};
+  result.json["level"] = number;
+  result.json["eta"] = eta_json(surface, level.estimate);
+  result.json.update(page_contact(form, level.u, surface, limits));
   return result;
 }
 
@@ -142,6 +146,8 @@ io::Json page_volume(const contact::NitscheForm<3>& form, const adapt::Certified
           {"stress", stress_json(stress)}};
 }
 
+template io::Json surface_json(const contact::NitscheForm<2>&, const Surface&);
+template io::Json surface_json(const contact::NitscheForm<3>&, const Surface&);
 template PageLevel page_level(int, const contact::NitscheForm<2>&, const adapt::CertifiedLevel<2>&,
                               const PageLimits&);
 template PageLevel page_level(int, const contact::NitscheForm<3>&, const adapt::CertifiedLevel<3>&,

@@ -20,6 +20,11 @@ struct PageLevel
   io::Json volume{};  ///< page_volume() of the last level
 };
 
+/// What is the same in the data of every surface: its points with their displacements, its faces, stresses,
+/// regions, bodies.
+template <int dim>
+[[nodiscard]] io::Json surface_json(const contact::NitscheForm<dim>& form, const Surface& surface);
+
 template <int dim>
 [[nodiscard]] PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
                                    const adapt::CertifiedLevel<dim>& level, const PageLimits& limits = {});

@@ -97,11 +97,11 @@ class SurfaceSampler
 {
  public:
   SurfaceSampler(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                 const certify::Stress<dim>& stress, int subdivision)
+                 const StressAt<dim>& stress, int subdivision)
       : form_(form),
         u_(u),
         space_(form.space().mesh(), subdivision),
-        stress_(io::equilibrated_stress_field(space_, stress)),
+        stress_(stress(space_)),
         body_of_(mesh::number_bodies(space_.mesh()).of_cell),
         vertex_of_node_(space_.n_nodes(), -1)
   {
@@ -152,7 +152,7 @@ class SurfaceSampler
   fem::LagrangeSpace<dim> space_;  ///< of degree k: its nodes are the vertices of the lattices
   io::TensorField<dim> stress_;
   fem::Tabulation<dim> at_nodes_;    ///< the basis of u at these nodes
-  std::vector<Tensor<dim>> values_;  ///< sigma_h at the nodes of a cell
+  std::vector<Tensor<dim>> values_;  ///< the stress at the nodes of a cell
   bool has_rest_ = false;            ///< out_of_plane_rest() is not 0
   std::vector<std::vector<int>> lattices_;
   std::vector<int> body_of_;  ///< by cells
@@ -255,7 +255,7 @@ std::vector<Point<2>> triangle_middles(int k, bool swapped)
 
 template <int dim>
 Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
-                       const certify::Stress<dim>& stress, const PageLimits& limits)
+                       const StressAt<dim>& stress, const PageLimits& limits)
 {
   const std::vector<Face> faces = all_faces(form);
   const int k = subdivision(faces.size(), form.space().degree(), limits.subdivided);
@@ -269,6 +269,15 @@ Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const do
 }
 
 template <int dim>
+Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                       const certify::Stress<dim>& stress, const PageLimits& limits)
+{
+  const StressAt<dim> at = [&](const fem::LagrangeSpace<dim>& space)
+  { return io::equilibrated_stress_field(space, stress); };
+  return sample_surface<dim>(form, u, at, limits);
+}
+
+template <int dim>
 std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits& limits)
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
@@ -279,6 +288,10 @@ std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits&
 
 template std::size_t n_triangles(const contact::NitscheForm<2>&, const PageLimits&);
 template std::size_t n_triangles(const contact::NitscheForm<3>&, const PageLimits&);
+template Surface sample_surface(const contact::NitscheForm<2>&, std::span<const double>, const StressAt<2>&,
+                                const PageLimits&);
+template Surface sample_surface(const contact::NitscheForm<3>&, std::span<const double>, const StressAt<3>&,
+                                const PageLimits&);
 template Surface sample_surface(const contact::NitscheForm<2>&, std::span<const double>,
                                 const certify::Stress<2>&, const PageLimits&);
 template Surface sample_surface(const contact::NitscheForm<3>&, std::span<const double>,

@@ -5,12 +5,14 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "tribound/adapt/level.h"
 #include "tribound/base/types.h"
 #include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/io/fields/tensor_field.h"
 
 namespace tribound::app
 {
@@ -94,7 +96,15 @@ inline constexpr std::array<int, 3> stress_entries<2> = {0, 1, 3};
 template <int dim>
 [[nodiscard]] std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits& limits);
 
-/// The surface of the body on one level.
+/// A stress as a field at the nodes of a space, which outlives the field.
+template <int dim>
+using StressAt = std::function<io::TensorField<dim>(const fem::LagrangeSpace<dim>& space)>;
+
+/// The surface of the body with a displacement and a stress.
+template <int dim>
+[[nodiscard]] Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                     const StressAt<dim>& stress, const PageLimits& limits = {});
+/// The same on one level.
 template <int dim>
 [[nodiscard]] Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const double> u,
                                      const certify::Stress<dim>& stress, const PageLimits& limits = {});

@@ -209,7 +209,7 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
   return text + paragraph("status", status + why) + line("results", directory);
 }
 
-std::string judgement_json(const JudgementRecord& r)
+io::Json judgement_object(const JudgementRecord& r)
 {
   io::Json object{
       {"schema", judgement_schema},
@@ -243,7 +243,7 @@ std::string judgement_json(const JudgementRecord& r)
     object["forces"].push_back(
         {{"boundary", force.boundary}, {"theirs", force.theirs}, {"ours", force.ours}});
   for (const JudgedNumber& number : r.numbers) object["quantities"].push_back(json(number));
-  if (!r.judgement) return io::json_text(object);
+  if (!r.judgement) return object;
   const certify::Judgement& j = *r.judgement;
   object["displacement"] = json(j.displacement, j.bound);
   if (j.stress) object["stress"] = json(*j.stress, j.bound);
@@ -253,7 +253,7 @@ std::string judgement_json(const JudgementRecord& r)
   for (const certify::RigidDifference& rigid : j.rigid)
     object["rigid_difference"].push_back(
         {{"body", rigid.body}, {"translation", rigid.translation}, {"rotation", rigid.rotation}});
-  return io::json_text(object);
+  return object;
 }
 
 template <int dim>

@@ -70,7 +70,7 @@ struct JudgementRecord
 /// As printed; `directory`: of the files.
 [[nodiscard]] std::string judgement_text(const JudgementRecord& record, const std::string& directory);
 /// The fields of docs/output.md; what is unknown is null.
-[[nodiscard]] std::string judgement_json(const JudgementRecord& record);
+[[nodiscard]] io::Json judgement_object(const JudgementRecord& record);
 
 /// A row for every cell of theirs: centre, region, distance, part of the square of the whole, and whether it
 /// is among the fewest cells without which at most half of the distance is left.

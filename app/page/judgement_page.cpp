@@ -1,0 +1,208 @@
+#include "app/page/judgement_page.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "app/page/packed_array.h"
+#include "app/page/page_level.h"
+#include "app/result/judgement.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/evaluation.h"
+#include "tribound/fem/nested.h"
+#include "tribound/io/record/record_json.h"
+#include "tribound/mesh/overlay.h"
+
+namespace tribound::app
+{
+
+namespace
+{
+
+constexpr int distance_bits = 12;
+constexpr double distance_decades = 8;
+
+/// A displacement on a mesh that comes from `mesh` by bisect(), at points of the cells of `mesh`.
+template <int dim>
+class NestedDisplacement
+{
+ public:
+  NestedDisplacement(const mesh::Mesh<dim>& mesh, const fem::LagrangeSpace<dim>& space,
+                     std::span<const double> u)
+      : space_(space), u_(u), pairs_(mesh::overlay(mesh, space.mesh()))
+  {
+  }
+
+  [[nodiscard]] Point<dim> value(Index cell, const Point<dim>& x) const
+  {
+    const Place at = place(cell, x);
+    return fem::value_at<dim>(space_.cell_nodes(at.cell), u_, tabulate(at).values_at(0));
+  }
+  [[nodiscard]] Tensor<dim> gradient(Index cell, const Point<dim>& x) const
+  {
+    const Place at = place(cell, x);
+    return fem::gradient_at<dim>(space_.cell_nodes(at.cell), u_, tabulate(at).gradients_at(0),
+                                 mesh::cell_map(space_.mesh(), at.cell).inverse_transpose);
+  }
+
+ private:
+  struct Place
+  {
+    Index cell = 0;
+    Point<dim> xhat = Point<dim>::Zero();
+  };
+
+  /// The part of the cell that contains x: the one where its smallest barycentric coordinate is the largest.
+  [[nodiscard]] Place place(Index cell, const Point<dim>& x) const
+  {
+    Place best;
+    double inside = -std::numeric_limits<double>::infinity();
+    for (const mesh::CellPair& pair : std::ranges::equal_range(pairs_, cell, {}, &mesh::CellPair::a))
+    {
+      const Point<dim> xhat = fem::reference_point(mesh::cell_map(space_.mesh(), pair.b), x);
+      const double least = std::min(xhat.minCoeff(), 1 - xhat.sum());
+      if (least <= inside) continue;
+      inside = least;
+      best = {pair.b, xhat};
+    }
+    return best;
+  }
+
+  [[nodiscard]] fem::Tabulation<dim> tabulate(const Place& at) const
+  {
+    return space_.basis().tabulate(std::span(&at.xhat, 1));
+  }
+
+  const fem::LagrangeSpace<dim>& space_;
+  std::span<const double> u_;
+  std::vector<mesh::CellPair> pairs_;  ///< ascending in their first cell
+};
+
+/// Its values at the nodes of a space on the coarser mesh.
+template <int dim>
+std::vector<double> at_nodes(const fem::LagrangeSpace<dim>& space,
+                             const NestedDisplacement<dim>& displacement)
+{
+  std::vector<double> values(space.n_dofs());
+  std::vector<char> is_known(space.n_nodes(), 0);
+  for (Index cell = 0; cell < space.mesh().n_cells(); ++cell)
+  {
+    const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
+    for (int i = 0; i < space.basis().n_nodes(); ++i)
+    {
+      const Index node = space.cell_nodes(cell)[i];
+      if (is_known[node]++ != 0) continue;
+      const Point<dim> u = displacement.value(cell, map(space.basis().node_point(i)));
+      std::ranges::copy(u, values.begin() + dim * static_cast<std::ptrdiff_t>(node));
+    }
+  }
+  return values;
+}
+
+/// Its stress, with the initial one.
+template <int dim>
+StressAt<dim> stress_of(const problem::Problem<dim>& problem, const NestedDisplacement<dim>& displacement)
+{
+  return [&](const fem::LagrangeSpace<dim>& lattice) -> io::TensorField<dim>
+  {
+    return {"stress", [&](Index cell, std::span<Tensor<dim>> values)
+            {
+              const int region = lattice.mesh().region(cell);
+              const mesh::CellMap<dim> map = mesh::cell_map(lattice.mesh(), cell);
+              for (std::size_t i = 0; i < values.size(); ++i)
+              {
+                const Point<dim> x = map(lattice.basis().node_point(static_cast<int>(i)));
+                values[i] = contact::sigma<dim>(problem.material(region), displacement.gradient(cell, x));
+                if (problem.regions()[region].has_initial_stress())
+                  values[i] += problem.initial_stress(region, x);
+              }
+            }};
+  };
+}
+
+/// The stress that was read, by its values at the nodes of the cells of their space.
+template <int dim>
+StressAt<dim> stress_read(const fem::LagrangeSpace<dim>& space, std::span<const Tensor<dim>> stress)
+{
+  return [&space, stress](const fem::LagrangeSpace<dim>& lattice) -> io::TensorField<dim>
+  {
+    return {"stress", [table = space.basis().tabulate(lattice.basis().node_points()), stress](
+                          Index cell, std::span<Tensor<dim>> values)
+            {
+              const auto n_nodes = static_cast<std::size_t>(table.n_nodes);
+              for (int q = 0; q < table.n_points; ++q)
+              {
+                values[q].setZero();
+                for (std::size_t i = 0; i < n_nodes; ++i)
+                  values[q] += table.values_at(q)[i] * stress[n_nodes * cell + i];
+              }
+            }};
+  };
+}
+
+io::Json distance_json(const Surface& surface, const certify::JudgedField& field)
+{
+  std::vector<double> values;
+  for (const Index cell : surface.cells) values.push_back(field.cells[cell]);
+  return pack_logarithmic(values, distance_bits, distance_decades);
+}
+
+/// Per face: 2 in a cell to be refined, else 1 in the core of the error, else 0.
+io::Json place_json(const Surface& surface, const certify::JudgedField& field)
+{
+  std::vector<Index> of_cell(field.cells.size(), 0);
+  std::vector<double> descending = field.cells;
+  std::ranges::sort(descending, std::greater());
+  if (const std::size_t n = field.core.n_cells; n > 0)
+    for (std::size_t c = 0; c < of_cell.size(); ++c) of_cell[c] = field.cells[c] >= descending[n - 1] ? 1 : 0;
+  for (const Index cell : field.halving) of_cell[cell] = 2;
+  std::vector<Index> places;
+  for (const Index cell : surface.cells) places.push_back(of_cell[cell]);
+  return pack_integers(places);
+}
+
+}  // namespace
+
+template <int dim>
+io::Json judged_surfaces(const contact::NitscheForm<dim>& form, const certify::ForeignSolution<dim>& theirs,
+                         const certify::Judgement& judgement, const fem::LagrangeSpace<dim>& space,
+                         std::span<const double> u)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  const NestedDisplacement<dim> their_displacement(mesh, form.space(), theirs.u);
+  const NestedDisplacement<dim> our_displacement(mesh, space, u);
+  const StressAt<dim> their_stress = theirs.stress.empty() ? stress_of(form.problem(), their_displacement)
+                                                           : stress_read<dim>(form.space(), theirs.stress);
+  const Surface shown = sample_surface<dim>(form, theirs.u, their_stress);
+  const Surface ours = sample_surface<dim>(form, at_nodes(form.space(), our_displacement),
+                                           stress_of(form.problem(), our_displacement));
+  io::Json json{{"theirs", surface_json(form, shown)},
+                {"ours", surface_json(form, ours)},
+                {"contact_faces", shown.contact.pressure.size() / shown.n_face_points()},
+                {"distance", distance_json(shown, judgement.displacement)},
+                {"place", place_json(shown, judgement.displacement)}};
+  if (judgement.stress) json["stress_distance"] = distance_json(shown, *judgement.stress);
+  return json;
+}
+
+void write_judgement_page(const PageTemplate& page, const std::filesystem::path& directory,
+                          const JudgementRecord& record, const io::Json& surfaces)
+{
+  const std::vector<std::string> files = {"judgement.json", "judged_cells.csv", "judged.vtu", "report.html"};
+  page.write(directory / "judgement.html", "judgement-data",
+             {{"judgement", judgement_object(record)},
+              {"program", io::program_json(io::build_facts())},
+              {"machine", machine_json()},
+              {"files", files_json(directory, files)},
+              {"surfaces", surfaces}});
+}
+
+template io::Json judged_surfaces(const contact::NitscheForm<2>&, const certify::ForeignSolution<2>&,
+                                  const certify::Judgement&, const fem::LagrangeSpace<2>&,
+                                  std::span<const double>);
+template io::Json judged_surfaces(const contact::NitscheForm<3>&, const certify::ForeignSolution<3>&,
+                                  const certify::Judgement&, const fem::LagrangeSpace<3>&,
+                                  std::span<const double>);
+
+}  // namespace tribound::app
