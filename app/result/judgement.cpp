@@ -236,6 +236,7 @@ io::Json judgement_object(const JudgementRecord& r)
       {"forces", io::Json::array()},
       {"imbalance", io::number_or_null(r.imbalance)},
       {"penetration", io::number_or_null(r.penetration)},
+      {"penetrated", io::text_or_null(r.penetrated)},
       {"rigid_difference", io::Json::array()},
       {"factor", nullptr},
       {"doubt", nullptr}};

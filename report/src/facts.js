@@ -112,6 +112,8 @@ const contents = { "certificate.json": "the whole result, for programs", "conver
   "case.toml": "the case as it was solved", "case_effective.toml": "the case as it was solved",
   "sweep.csv": "a row per run", "sweep.json": "the whole sweep, for programs",
   "study.csv": "a row per variant and level", "study.json": "the whole study, for programs",
+  "judgement.json": "the whole judgement, for programs", "judged_cells.csv": "a row per cell of theirs: its distance, and whether to refine it",
+  "judged.vtu": "their displacement with the distances, for ParaView", "report.html": "the run that judged it",
   "../report.html": "the study that this run belongs to" };
 
 /** Tables stored in the page, which may be read without the files. */

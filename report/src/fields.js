@@ -2,21 +2,21 @@
 
 import { unpackAll } from "./arrays.js";
 import { Bodies } from "./bodies.js";
-import { bindCamera, Camera } from "./camera.js";
+import { Camera } from "./camera.js";
 import { statusColours, statusNames } from "./components.js";
 import { withSegments } from "./contact_parts.js";
 import { Cut } from "./cut.js";
 import { contactDirection, firstDirection, upAxis } from "./directions.js";
-import { element, number, section, withoutNoise } from "./dom.js";
+import { element, number, section } from "./dom.js";
 import { noteText, usualFactor, valueText } from "./field_words.js";
 import { FieldControls } from "./field_controls.js";
 import { obstacleCorners } from "./obstacle.js";
 import { overlay } from "./overlay.js";
-import { cornerAt, valueAt } from "./pick.js";
+import { frameAspect, homeScale, Picture, placeText } from "./picture.js";
+import { valueAt } from "./pick.js";
 import { colourRange, cornerPositions, fieldRows, fieldsOf, readSurface, vertexPositions } from "./surface.js";
 import { colours, fieldLegend, onScale, shownStates } from "./scales.js";
-import { hasWebGL, Scene } from "./scene.js";
-import { SoftwareScene } from "./software.js";
+import { hasWebGL } from "./scene.js";
 import { stagesOf } from "./stages.js";
 
 const paperWidth = 530; // CSS pixels of the picture on paper, next to its legend
@@ -35,20 +35,16 @@ class FieldView {
   }
 
   build(is2d) {
-    this.place = element("div", { class: "view", tabindex: "0", role: "img", "aria-label": "Mesh and fields" });
-    this.overlay = element("svg:svg", { class: "view-overlay", "aria-hidden": "true" });
-    this.frame = element("div", { class: `view-frame view-${is2d ? 2 : 3}d` }, this.place, this.overlay,
-      (this.tooltip = element("div", { class: "tooltip", hidden: true })));
+    this.picture = new Picture(is2d, "Mesh and fields", paperWidth);
     this.legend = element("div", { class: "view-legend" });
-    this.print = element("svg:svg", { class: "view-overlay print-only", "aria-hidden": "true" });
     this.note = element("p", { class: "note" });
     this.controls = new FieldControls(this.levels.at(-1), this.levels.length, this.stages, (changes) => this.set(changes), {
-      home: () => { this.home(); this.draw(); },
-      svgs: () => { this.keepPicture(); return [this.print]; },
+      home: () => { this.home(); this.picture.draw(); },
+      svgs: () => { this.picture.keep(); return [this.picture.print]; },
       rows: () => fieldRows(this.current, this.shown, this.field),
     });
     this.element = element("div", { class: "fields" }, this.controls.element,
-      element("div", { class: "view-row" }, this.frame, this.print, this.legend), this.note,
+      element("div", { class: "view-row" }, this.picture.frame, this.picture.print, this.legend), this.note,
       element("p", { class: "note screen-only" }, `Drag to ${is2d ? "move" : "turn, with Shift to move"}, scroll after a click (or with Ctrl) to `
         + "zoom, double-click for the whole body; keys: arrows, +, \u2212, 0. With fingers: tap first, then drag and pinch; tap elsewhere to scroll on."));
   }
@@ -57,11 +53,6 @@ class FieldView {
   async start() {
     this.volume = await this.readVolume();
     await this.set({});
-    new ResizeObserver(() => this.fit()).observe(this.place);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.fit());
-    addEventListener("beforeprint", () => this.keepPicture());
-    this.place.addEventListener("pointermove", (event) => { this.pointer = event; this.point(); });
-    this.place.addEventListener("pointerleave", () => { this.pointer = null; this.point(); });
   }
 
   /** Reads the interior of the body on the last level, relative to its centre. */
@@ -70,18 +61,6 @@ class FieldView {
     const volume = await unpackAll(this.data.volume);
     const { box } = await this.surface(this.levels.length - 1);
     return { ...volume, box, dimension: 3, nVertices: volume.points.length / 3, vertexBody: volume.bodies };
-  }
-
-  /** Adapts the picture to the size and background of its place; redraws only if they change, since that may take long. */
-  fit() {
-    const { clientWidth: width, clientHeight: height } = this.place;
-    const style = getComputedStyle(this.frame);
-    const [background, line] = ["--panel", "--mesh-line"].map((name) => style.getPropertyValue(name).trim());
-    const look = `${width} ${height} ${background}`;
-    if (look === this.look) return;
-    this.look = look;
-    this.scene.resize(width, height, background || "#ffffff", line || "#10161d");
-    this.draw();
   }
 
   surface(index) {
@@ -112,7 +91,7 @@ class FieldView {
     if (this.state.explosion !== this.apart && this.isHome()) this.home();
     this.apart = this.state.explosion;
     this.showState();
-    this.draw();
+    this.picture.draw();
   }
 
   takeSurface(surface) {
@@ -127,15 +106,16 @@ class FieldView {
   prepare(surface) {
     this.up = surface.dimension === 3 ? upAxis(surface) : 2;
     this.camera = new Camera(surface.dimension, { up: this.up });
-    const { size } = surface.box;
-    if (surface.dimension === 2) this.frame.style.aspectRatio = Math.min(2.4, Math.max(1, size[0] / size[1])) * 0.97;
+    if (surface.dimension === 2) this.picture.frame.style.aspectRatio = frameAspect(surface.box.size);
     this.usual = usualFactor(surface);
     this.state.factor ??= this.usual;
     this.isSlow = !hasWebGL();
-    this.scene = new (this.isSlow ? SoftwareScene : Scene)(this.place, surface.dimension);
-    bindCamera(this.place, this.camera, () => this.home(), () => this.draw());
+    this.picture.start({ camera: this.camera, home: () => this.home(), changed: () => this.picture.draw(),
+      depth: () => 10 * this.current.box.diagonal * (1 + this.state.explosion),
+      overlay: (place) => overlay(this.current, this.camera, place, { ...this.state, layout: this.layout() }),
+      describe: (hit) => this.describe(hit) }, surface.dimension);
     this.home();
-    this.fit();
+    this.picture.fit();
   }
 
   /** The volume belongs to the last level; on others a cut shows the inside of the surface. */
@@ -155,7 +135,7 @@ class FieldView {
   }
 
   takeField(field) {
-    const { current: surface, scene } = this;
+    const { current: surface, picture: { scene } } = this;
     const values = field.corners(surface);
     const usual = colourRange(surface, field, values);
     this.range = this.state.range ? { ...usual, ...this.state.range } : usual;
@@ -196,10 +176,9 @@ class FieldView {
   takePositions() {
     const { factor, obstacle } = this.state;
     const layout = this.layout();
-    this.corners = this.positions(factor, layout);
-    this.scene.setPositions(this.corners, vertexPositions(this.current, factor, layout));
+    this.picture.setPositions(this.positions(factor, layout), vertexPositions(this.current, factor, layout));
     if (this.current.dimension === 3)
-      this.scene.setObstacle(obstacle && this.current.nContactFaces > 0 ? obstacleCorners(this.current, factor, layout) : null);
+      this.picture.scene.setObstacle(obstacle && this.current.nContactFaces > 0 ? obstacleCorners(this.current, factor, layout) : null);
   }
 
   takeLines() {
@@ -207,7 +186,7 @@ class FieldView {
     let all = this.state.mesh ? this.current.segments().all : null;
     const layout = this.layout();
     if (all && layout && this.bodies.anyHidden) all = all.filter((v, i) => layout[vertexBody[all[i & ~1]]]); // pairs of vertices of one body
-    this.scene.setLines(all && this.cut ? this.cut.segments(all) : all);
+    this.picture.scene.setLines(all && this.cut ? this.cut.segments(all) : all);
   }
 
   showState() {
@@ -216,15 +195,13 @@ class FieldView {
     this.note.textContent = noteText(surface, state, { isCut: this.cut !== null, isInside: this.inside !== null, isSlow: this.isSlow,
       stage: this.stages.name,
       nLeftOut: this.levels.at(-1).level + (this.stages.name === "level" ? 1 : 0) - this.levels.length });
-    this.place.setAttribute("aria-label", `${this.field.label} on ${this.stages.name} ${surface.level}, displacements times ${number(state.factor, 3)}`);
+    this.picture.place.setAttribute("aria-label", `${this.field.label} on ${this.stages.name} ${surface.level}, displacements times ${number(state.factor, 3)}`);
   }
 
   /** Shows the whole body, with room for its displacements. */
   home() {
     const { middle, size } = this.bodies.extent(this.current, this.state.explosion);
-    const aspect = this.place.clientWidth / Math.max(1, this.place.clientHeight) || 1.5;
-    const scale = this.current.dimension === 2 ? Math.max(size[1], size[0] / aspect) * 0.66
-      : Math.hypot(...size) * 0.56 * Math.max(1, 1 / aspect);
+    const scale = homeScale(size, this.current.dimension, this.picture.place);
     this.camera.reset(scale);
     this.camera.target = middle;
     this.homeView = { scale, target: middle };
@@ -235,67 +212,12 @@ class FieldView {
     return this.camera.scale === this.homeView.scale && this.camera.target === this.homeView.target;
   }
 
-  draw() {
-    if (this.pending) return;
-    this.pending = requestAnimationFrame(() => {
-      this.pending = null;
-      this.render();
-      this.point();
-    });
-  }
-
-  overlayOn(place) {
-    return overlay(this.current, this.camera, place, { ...this.state, layout: this.layout() });
-  }
-
-  render() {
-    if (!this.corners || this.place.clientWidth === 0) return;
-    this.scene.render(this.camera, 10 * this.current.box.diagonal * (1 + this.state.explosion));
-    this.overlay.replaceChildren(...this.overlayOn(this.place));
-  }
-
-  /** Describes the point under the pointer, again whenever either moves. */
-  point() {
-    if (this.pointing) return;
-    this.pointing = requestAnimationFrame(() => {
-      this.pointing = null;
-      const hit = this.pointer && !this.pointer.buttons && this.corners ? this.hit(this.pointer) : null;
-      this.tooltip.hidden = hit === null;
-      if (hit !== null) this.tell(hit);
-    });
-  }
-
-  hit(event) {
-    const box = this.place.getBoundingClientRect();
-    const length = (2 * this.camera.scale) / box.height;
-    const [px, py] = [event.clientX - box.left, event.clientY - box.top];
-    const found = cornerAt(this.corners, this.camera, (px - box.width / 2) * length, (box.height / 2 - py) * length);
-    return found && { ...found, px, py };
-  }
-
-  tell({ px, py, ...hit }) {
-    const { current: surface, field, undeformed } = this;
-    const axes = ["x", "y", "z"].slice(0, surface.dimension);
-    const place = withoutNoise(axes.map((_, c) => surface.box.centre[c]
-      + hit.weights.reduce((sum, w, i) => sum + w * undeformed[3 * (hit.corner + i) + c], 0)), 100 * surface.box.diagonal);
+  /** What the pointer is told of a point. */
+  describe(hit) {
+    const { current: surface, field } = this;
     const value = hit.corner < this.values.length ? valueAt(this.values, hit) : null;
     const text = valueText(field, value, field.kind === "category" ? this.categories(field) : []);
-    this.tooltip.replaceChildren(element("strong", {}, text), element("br"), axes.map((axis, c) => `${axis} = ${number(place[c], 4)}`).join(", "));
-    this.tooltip.style.left = `${Math.min(px + this.place.offsetLeft + 14, this.frame.clientWidth - 170)}px`;
-    this.tooltip.style.top = `${py + this.place.offsetTop + 14}px`;
-  }
-
-  /** On paper the canvas would be empty; its image replaces it, with everything drawn over it. */
-  keepPicture() {
-    this.render();
-    const { offsetLeft: x, offsetTop: y, clientLeft, clientTop } = this.place;
-    const [right, bottom] = [this.frame.clientWidth - x - this.place.offsetWidth, this.frame.clientHeight - y - this.place.offsetHeight];
-    const width = paperWidth - x - right;
-    const height = (width * this.place.clientHeight) / this.place.clientWidth;
-    const place = { offsetLeft: x, offsetTop: y, clientLeft, clientTop, clientWidth: width, clientHeight: height };
-    this.print.setAttribute("viewBox", `0 0 ${paperWidth} ${y + height + bottom}`);
-    this.print.replaceChildren(element("svg:image", { x, y, width, height, href: this.scene.canvas.toDataURL("image/png") }),
-      ...this.overlayOn(place));
+    return [element("strong", {}, text), element("br"), placeText(surface, this.undeformed, hit)];
   }
 }
 

@@ -2,6 +2,7 @@
 
 import "./style.css";
 import { element } from "./dom.js";
+import { judgementPage } from "./judgement.js";
 import { runPage } from "./run.js";
 import { studyPage } from "./study.js";
 import { sweepPage } from "./sweep.js";
@@ -25,12 +26,13 @@ function openOnPaper(page) {
 
 async function show() {
   const place = document.getElementById("page");
-  const [run, study, sweep] = [embedded("run-data"), embedded("study-data"), embedded("sweep-data")];
-  if (!run && !study && !sweep) {
-    place.replaceChildren(element("p", {}, "This is the page without data; tribound run, study and sweep fill it."));
+  const kinds = { run: (data) => runPage(data, embedded("true-errors")), study: studyPage, sweep: sweepPage, judgement: judgementPage };
+  const kind = Object.keys(kinds).find((name) => document.getElementById(`${name}-data`));
+  if (!kind) {
+    place.replaceChildren(element("p", {}, "This is the page without data; tribound run, study, sweep and judge fill it."));
     return;
   }
-  const page = run ? runPage(run, embedded("true-errors")) : study ? studyPage(study) : sweepPage(sweep);
+  const page = kinds[kind](embedded(`${kind}-data`));
   const { machine, program } = page;
   document.title = `${page.title} \u2013 Tribound`;
   place.replaceChildren(page.header, navigation(page.sections), ...page.sections,

@@ -61,6 +61,13 @@ export function boundFormula(components, values) {
   return display(total(), o("="), element("math:msqrt", {}, ...cells), ...whole.flatMap((name) => [o("+"), eta(name)]));
 }
 
+/** The interval of the error of v from its distance d to u_h, whose bound is B. */
+export function judgementFormula() {
+  const error = norm(i("u"), o("\u2212"), i("v"));
+  return display(i("d"), o("\u2212"), i("B"), o("\u2264"), error, o("\u2264"), i("d"), o("+"), i("B"), o(",", { separator: "true" }), element("math:mspace", { width: "1em" }),
+    i("d"), o("="), norm(i("v"), o("\u2212"), sub(i("u"), i("h"))));
+}
+
 /** The formula of the guarantee. */
 export function guaranteeFormula() {
   const v = row(i("v"), o("\u2208"), sup(i("H"), n(1)));

@@ -131,6 +131,9 @@ const spread = {
   vertex: ({ vertex }, value) => perCorner(vertex.length, (c) => value(vertex[c])),
 };
 
+/** Values per face, at the corners. */
+export const faceValues = spread.face;
+
 /** Stress at lattice points or, where a mesh is large, one value per face. */
 function spreadStress(surface, value) {
   const { stress, out_of_plane: ratios, region, nFaces, nFacePoints } = surface;
@@ -162,7 +165,7 @@ export function fieldsOf(surface, components) {
       inside: (volume) => perPoint(volume, (v) => volume.displacement[d * v + c]) })),
     ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: unit("stress"), group: "Stress (equilibrated)", trimmed: true,
       corners: (s) => spreadStress(s, value), inside: (volume) => stressValues(volume.stress, null, value) })),
-    ...(surface.eta.tot ? [{ id: "eta-tot", label: "\u03b7 of the cell, total", unit: etaUnit, group: "Error", kind: "logarithmic",
+    ...(surface.eta?.tot ? [{ id: "eta-tot", label: "\u03b7 of the cell, total", unit: etaUnit, group: "Error", kind: "logarithmic",
       corners: (s) => spread.face(s, s.eta.tot) }] : []),
     ...components.filter(({ name }) => surface.eta[name]).map(({ name, meaning }) => ({ id: `eta-${name}`,
       label: `\u03b7 ${name}: ${meaning}`, unit: etaUnit, group: "Error", kind: "logarithmic", corners: (s) => spread.face(s, s.eta[name]) })),

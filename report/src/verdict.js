@@ -46,7 +46,7 @@ function warningItem({ where, text }) {
 }
 
 /** What to check before using the result; next to the verdict, on paper too. */
-function warningBox({ warnings }) {
+export function warningBox({ warnings }) {
   if (!warnings || warnings.length === 0) return null;
   return element("div", { class: "verdict verdict-budget warnings", role: "status" },
     element("span", { class: "verdict-mark", "aria-hidden": "true" }, "!"),

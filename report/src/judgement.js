@@ -1,0 +1,54 @@
+// The page of a judgement, with the data of app/page/judgement_page.cpp: how wrong the solution of another program is.
+
+import { count, element, number, section, table } from "./dom.js";
+import { definitions, filesSection, timesAndMachine } from "./facts.js";
+import { errorsSection, judgedNumbersSection } from "./judgement_charts.js";
+import { comparisonSection } from "./judgement_fields.js";
+import { coreText, halvingText, judgementHeader, placeText } from "./judgement_words.js";
+import { judgementFormula } from "./math.js";
+import { measured, nameUnits, unit } from "./units.js";
+
+/** Where the error lies, what to refine, and what the picture says of a single cell. */
+function wordsOfCells({ displacement }) {
+  if (!displacement) return [];
+  return [element("h3", {}, "Where most of the error lies"), element("p", {}, coreText(displacement.core) ?? "No small part of the body is certain to hold most of it."),
+    element("h3", {}, "What to refine"), element("p", {}, halvingText(displacement)),
+    element("p", { class: "note" }, `The distance in a cell, or in any union of cells, is its error to within ${measured(number(displacement.bound, 3), unit("energy_norm"))}, the bound of ours.`)];
+}
+
+function guaranteeSection({ displacement, stress, quantities, guaranteed_for: target }) {
+  if (!displacement) return null;
+  const list = (items) => element("ul", {}, items.filter(Boolean).map((item) => element("li", {}, item)));
+  return section("guarantee", "Guarantee", "What is guaranteed, and what not", null, element("div", { class: "two-columns" },
+    element("div", {}, element("h3", {}, "Guaranteed"), judgementFormula(), element("p", {}, `The error is measured against ${target}.`), list([
+      "the error of their displacement, as a whole and in every union of cells", stress ? "the error of their stress, likewise" : null,
+      "the part of the squared error in its core", quantities.some(({ lower }) => lower !== null) ? "the interval of each exact number" : null])),
+    element("div", {}, element("h3", {}, "Not guaranteed"), list([
+      "rigid motions, which the energy does not see: below they are those between theirs and ours",
+      "what they would have on other meshes: halving the distance is what the cells say, not what their program does",
+      "the colours of ours, which are those of the computed solution"]))));
+}
+
+function rigidTable({ rigid_difference: rigid }) {
+  if (rigid.length === 0) return null;
+  return [element("h3", {}, "Rigid motions between theirs and ours"),
+    table(["body", "translation", "rotation"], rigid.map(({ body, translation, rotation }) => [String(body + 1), measured(placeText(translation), unit("length")), placeText(rotation)]))];
+}
+
+function readSection(judgement) {
+  const { solution, curved_distance: curved, load_step: step, factor } = judgement;
+  const length = (value) => measured(number(value, 2), unit("length"));
+  return section("read", "Read", "How it was read", null, definitions([["File", solution.file], ["It is", solution.description], ["Read as", judgement.read_as],
+    ["Mesh", `${count(solution.cells)} cells of the mesh of the case, nodes up to ${length(judgement.node_distance)} from their places`],
+    ["Curved edges", curved > 0 ? `up to ${length(curved)} from the straight ones` : null],
+    ["Load step", step === null ? null : String(step)],
+    ["Factor", factor ? `times ${number(factor, 5)} their displacement is the nearest to ours in the energy norm` : null]]), rigidTable(judgement));
+}
+
+export function judgementPage({ judgement, program, machine, files, surfaces }) {
+  nameUnits(judgement.units);
+  const fields = comparisonSection(surfaces, wordsOfCells(judgement));
+  const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), guaranteeSection(judgement), readSection(judgement),
+    section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
+  return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, program, machine }), sections, start: fields.start, machine, program };
+}

@@ -1,0 +1,102 @@
+// The result of a judgement in words and figures, as judgement.json has it.
+
+import { count, element, number, percent, plural } from "./dom.js";
+import { definitions } from "./facts.js";
+import { measured, quantityUnit, unit } from "./units.js";
+import { figure, kindOf, pageHeader, warningBox } from "./verdict.js";
+
+const verdicts = {
+  judged: { title: "Judged", mark: "\u2713", tone: "certified" },
+  wide: { title: "Judged, within a wide interval", mark: "!", tone: "budget" },
+  "no bound": { title: "Not judged", mark: "!", tone: "budget" },
+  accepted: { title: "Accepted", mark: "\u2713", tone: "certified" },
+  undecided: { title: "Undecided", mark: "!", tone: "budget" },
+  rejected: { title: "Rejected", mark: "\u00d7", tone: "failed" },
+};
+
+/** "between 7.31 % and 7.9 %" */
+export function between([lower, upper], text) {
+  return upper === null ? `at least ${text(lower)}` : `between ${text(lower)} and ${text(upper)}`;
+}
+
+export const relativeText = (interval) => between(interval, (value) => percent(value, 4));
+export const absoluteText = (interval, label) => measured(between(interval, (value) => number(value, 6)), label);
+
+export const placeText = (place) => `(${place.map((x) => number(x, 4)).join(", ")})`;
+
+/** The error of a displacement or a stress: relative, where the size of the exact one is known, and absolute. */
+export function errorText({ relative, error }) {
+  const size = absoluteText(error, unit("energy_norm"));
+  return relative ? `${relativeText(relative)}, ${size}` : size;
+}
+
+/** Where most of the error lies; nothing where no small part is certain to hold much. */
+export function coreText({ share, volume, cells, centre }) {
+  if (share < 0.05) return null;
+  return `At least ${Math.floor(100 * share)}\u00a0% of the squared error lies in ${percent(volume, 2)} of the body, ${plural(cells, "cell", "cells")}, around ${placeText(centre)}.`;
+}
+
+/** How wrong a number of theirs is; `size`: of the exact one. */
+export function wrongText({ name, wrong_by: wrong, lower, upper }) {
+  const size = Math.max(Math.abs(lower), Math.abs(upper));
+  const text = measured(`${number(wrong[0], 3)} to ${number(wrong[1], 3)}`, quantityUnit(name));
+  return size > 0 ? `${text}, ${percent(wrong[0] / size, 3)} to ${percent(wrong[1] / size, 3)}` : text;
+}
+
+function sentence(judgement) {
+  const { status, displacement, accept, reason, guaranteed_for: target } = judgement;
+  if (status === "no bound") return `The error of their solution is not bounded: ${reason}.`;
+  const error = displacement.relative ? `${relativeText(displacement.relative)} of the solution` : absoluteText(displacement.error, unit("energy_norm"));
+  const guaranteed = `The error of their displacement in the energy norm is ${error}, guaranteed, against ${target}.`;
+  if (accept !== null) return `${guaranteed} At most ${percent(accept)} was to be accepted.`;
+  if (status !== "wide") return guaranteed;
+  return `${guaranteed} The bound of ours is ${number(displacement.bound / displacement.distance, 3)} of the distance between both, `
+    + `${number(judgement.sharpness)} was asked for: give [adapt] more levels, unknowns or time.`;
+}
+
+function penetrationText({ penetration, penetrated }) {
+  if (penetration === null) return null;
+  if (penetration === 0) return "None at the points of contact.";
+  return `Up to ${measured(number(penetration), unit("length"))}${penetrated ? ` on \u201c${penetrated}\u201d` : ""}.`;
+}
+
+/** What to refine, in words. */
+export function halvingText({ halving_cells: cells }) {
+  return `Refine the ${plural(cells, "cell", "cells")} that judged_cells.csv marks: without them at most half of the distance is left.`;
+}
+
+function verdictBody(judgement) {
+  const { displacement, stress } = judgement;
+  return [element("p", {}, sentence(judgement)), definitions([
+    ["Displacement", displacement && errorText(displacement)],
+    ["Stress", stress && errorText(stress)],
+    ["Where", displacement && coreText(displacement.core)],
+    ["To halve it", displacement && halvingText(displacement)],
+    ["Penetration", penetrationText(judgement)]])];
+}
+
+function doubtBox({ doubt }) {
+  return doubt ? warningBox({ warnings: [{ where: "", text: `Their displacement ${doubt}` }] }) : null;
+}
+
+const intervalFigure = ({ relative }, name, note) => (relative?.[1] == null ? null
+  : figure(`${number(100 * relative[0], 3)} to ${percent(relative[1])}`, name, note));
+
+function figures(judgement) {
+  const { displacement, stress, cells, solution, quantities, penetration } = judgement;
+  return element("div", { class: "figures" }, [
+    displacement && intervalFigure(displacement, "error of the displacement", "energy norm, relative"),
+    stress && intervalFigure(stress, "error of the stress", "energy norm, relative"),
+    ...quantities.filter(({ wrong_by: wrong }) => wrong).slice(0, 3).map((quantity) =>
+      figure(number(quantity.theirs, 5), quantity.name, `wrong by ${wrongText(quantity)}`)),
+    penetration > 0 ? figure(number(penetration, 3), "largest penetration", unit("length")) : null,
+    figure(count(solution.cells), "cells of theirs", displacement ? `${count(cells)} of ours` : null)].filter(Boolean));
+}
+
+export function judgementHeader({ judgement, program, machine }) {
+  const verdict = verdicts[judgement.status];
+  const { file, description } = judgement.solution;
+  return pageHeader({ program, machine, title: judgement.title, file: judgement.file,
+    kind: `judgement of ${file} (${description}), ${kindOf(judgement)}`, verdict: { ...verdict, body: verdictBody(judgement) },
+    warnings: doubtBox(judgement), figures: figures(judgement) });
+}
