@@ -22,6 +22,8 @@ namespace
 
 constexpr int distance_bits = 12;
 constexpr double distance_decades = 8;
+/// Ours is finer than their cells. Both surfaces are on the page.
+constexpr PageLimits limits{.degree = 4, .subdivided = 12'000, .triangles = 120'000, .stresses = 12'000};
 
 /// A displacement on a mesh that comes from `mesh` by bisect(), at points of the cells of `mesh`.
 template <int dim>
@@ -174,9 +176,9 @@ io::Json judged_surfaces(const contact::NitscheForm<dim>& form, const certify::F
   const NestedDisplacement<dim> our_displacement(mesh, space, u);
   const StressAt<dim> their_stress = theirs.stress.empty() ? stress_of(form.problem(), their_displacement)
                                                            : stress_read<dim>(form.space(), theirs.stress);
-  const Surface shown = sample_surface<dim>(form, theirs.u, their_stress);
+  const Surface shown = sample_surface<dim>(form, theirs.u, their_stress, limits);
   const Surface ours = sample_surface<dim>(form, at_nodes(form.space(), our_displacement),
-                                           stress_of(form.problem(), our_displacement));
+                                           stress_of(form.problem(), our_displacement), limits);
   io::Json json{{"theirs", surface_json(form, shown)},
                 {"ours", surface_json(form, ours)},
                 {"contact_faces", shown.contact.pressure.size() / shown.n_face_points()},

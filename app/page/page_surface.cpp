@@ -60,6 +60,12 @@ std::vector<Face> all_faces(const contact::NitscheForm<dim>& form)
   return faces;
 }
 
+template <int dim>
+int shown_degree(const contact::NitscheForm<dim>& form, const PageLimits& limits)
+{
+  return std::max(form.space().degree(), limits.degree);
+}
+
 /// The corners of a face in the cell, anticlockwise as seen from outside.
 template <int dim>
 std::array<int, 3> corners(int local)
@@ -258,7 +264,7 @@ Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const do
                        const StressAt<dim>& stress, const PageLimits& limits)
 {
   const std::vector<Face> faces = all_faces(form);
-  const int k = subdivision(faces.size(), form.space().degree(), limits.subdivided);
+  const int k = subdivision(faces.size(), shown_degree(form, limits), limits.subdivided);
   SurfaceSampler<dim> sampler(form, u, stress, k);
   for (const Face& face : faces) sampler.add(face);
   Surface surface = std::move(sampler).take();
@@ -282,7 +288,7 @@ std::size_t n_triangles(const contact::NitscheForm<dim>& form, const PageLimits&
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const std::size_t n_faces = dim == 2 ? mesh.n_cells() : mesh.boundary().size();
-  const int k = subdivision(n_faces, form.space().degree(), limits.subdivided);
+  const int k = subdivision(n_faces, shown_degree(form, limits), limits.subdivided);
   return std::min(n_faces * k * k, limits.triangles);
 }
 

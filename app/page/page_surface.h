@@ -20,7 +20,8 @@ namespace tribound::app
 /// Sizes up to which the page shows a mesh unchanged.
 struct PageLimits
 {
-  std::size_t subdivided = 24'000;  ///< triangles up to which faces are subdivided, to show degree p
+  int degree = 0;                   ///< that is shown at least, even where that of the displacement is lower
+  std::size_t subdivided = 24'000;  ///< triangles up to which faces are subdivided, to show the degree
   std::size_t triangles = 240'000;  ///< triangles of a level; beyond, cells are merged
   std::size_t stresses = 24'000;    ///< triangles up to which stresses are given at points, not per face
   std::size_t earlier = 40'000;     ///< triangles of all levels before the last; beyond, they are omitted

@@ -2,6 +2,7 @@
 
 import { statusNames } from "./components.js";
 import { count, number } from "./dom.js";
+import { isNamed } from "./scales.js";
 import { measured, unit } from "./units.js";
 
 /** 1, 2 or 5 times a power of ten, not above x. */
@@ -33,5 +34,5 @@ export function noteText(surface, { factor, explosion }, { isCut, isInside, isSl
 export function valueText(field, value, names) {
   if (value === null) return field.contact ? "not on the contact boundary" : "known on the surface only";
   if (field.kind === "status") return statusNames[Math.round(value)];
-  return field.kind === "category" ? names[Math.round(value)] : measured(number(value, 4), field.unit);
+  return isNamed(field.kind) ? names[Math.round(value)] : measured(number(value, 4), field.unit);
 }

@@ -47,7 +47,7 @@ function readSection(judgement) {
 
 export function judgementPage({ judgement, program, machine, files, surfaces }) {
   nameUnits(judgement.units);
-  const fields = comparisonSection(surfaces, wordsOfCells(judgement));
+  const fields = comparisonSection(surfaces, judgement.cells, wordsOfCells(judgement));
   const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
   return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, program, machine }), sections, start: fields.start, machine, program };

@@ -9,18 +9,18 @@ import { usualFactor, valueText } from "./field_words.js";
 import { overlay } from "./overlay.js";
 import { frameAspect, homeScale, Picture, placeText } from "./picture.js";
 import { valueAt } from "./pick.js";
-import { colours, fieldLegend, onScale } from "./scales.js";
+import { colours, fieldLegend, isNamed, onScale } from "./scales.js";
 import { colourRange, cornerPositions, faceValues, fieldRows, fieldsOf, readSurface, vertexPositions } from "./surface.js";
 import { unit } from "./units.js";
 
 const paperWidth = 270; // CSS pixels of each picture on paper
 const manySegments = 30000; // beyond this, the mesh is not drawn
-const places = ["elsewhere", "core of the error", "to be refined"];
+const places = ["elsewhere", "core of the error", "core, to be refined"];
 
 /** What the third picture can show, cell by cell. */
 function cellFields({ distance, stress_distance: ofStress, place }) {
-  const field = (id, label, kind, values) => values && { id, label, kind, unit: kind === "category" ? "" : unit("energy_norm"), corners: (s) => faceValues(s, values) };
-  return [field("place", "where the error lies", "category", place), field("distance", "distance of the displacements", "logarithmic", distance),
+  const field = (id, label, kind, values) => values && { id, label, kind, unit: isNamed(kind) ? "" : unit("energy_norm"), corners: (s) => faceValues(s, values) };
+  return [field("place", "where the error lies", "judged", place), field("distance", "distance of the displacements", "logarithmic", distance),
     field("stress-distance", "distance of the stresses", "logarithmic", ofStress)].filter(Boolean);
 }
 
@@ -68,8 +68,8 @@ class Pane {
 }
 
 class Comparison {
-  constructor(data) {
-    this.data = data;
+  constructor(data, nOurs) {
+    Object.assign(this, { data, nOurs });
     const is2d = data.theirs.dimension === 2;
     this.panes = ["Theirs", "Ours", "How far apart, cell by cell"].map((title) => new Pane(title, is2d));
     this.legend = element("div", { class: "view-legend" });
@@ -124,7 +124,7 @@ class Comparison {
     const values = this.surfaces.map((surface) => field.corners(surface));
     const range = common(...this.surfaces.map((surface, i) => colourRange(surface, field, values[i])));
     const ofCells = cells.corners(this.surfaces[0]);
-    const cellRange = cells.kind === "category" ? { low: 0, high: places.length - 1 } : colourRange(this.surfaces[0], cells, ofCells);
+    const cellRange = isNamed(cells.kind) ? { low: 0, high: places.length - 1 } : colourRange(this.surfaces[0], cells, ofCells);
     values.forEach((ofPane, i) => this.panes[i].setField(field, ofPane, range));
     this.panes[1].range = range;
     this.panes[2].setField(cells, ofCells, cellRange);
@@ -135,8 +135,8 @@ class Comparison {
     this.legend.replaceChildren(fieldLegend(field, range, []));
     this.cellLegend.replaceChildren(fieldLegend(cells, cellRange, places));
     this.factorText.textContent = `\u00d7 ${number(factor, 3)}`;
-    this.note.textContent = `${this.surfaces[0].dimension === 3 ? "Shown is the surface. " : ""}Both are drawn on their mesh of ${count(this.data.theirs.cells)} cells; `
-      + `displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`;
+    this.note.textContent = `${this.surfaces[0].dimension === 3 ? "Shown is the surface. " : ""}Both are drawn on their mesh of ${count(this.data.theirs.cells)} cells, `
+      + `ours was computed on ${count(this.nOurs)}; displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`;
     this.draw();
   }
 
@@ -164,10 +164,10 @@ class Comparison {
   }
 }
 
-/** `words`: what stands beside the cells. */
-export function comparisonSection(data, words) {
+/** `nOurs`: cells that ours was computed on; `words`: what stands beside the cells. */
+export function comparisonSection(data, nOurs, words) {
   if (!data) return { element: null, start: async () => {} };
-  const view = new Comparison(data);
+  const view = new Comparison(data, nOurs);
   view.words.append(...words);
   return { element: section("fields", "Fields", "Theirs and ours", "With one colour scale, on their mesh.", view.element), start: () => view.start() };
 }

@@ -1,6 +1,6 @@
 // The result of a judgement in words and figures, as judgement.json has it.
 
-import { count, element, number, percent, plural } from "./dom.js";
+import { element, number, percent, plural } from "./dom.js";
 import { definitions } from "./facts.js";
 import { measured, quantityUnit, unit } from "./units.js";
 import { figure, kindOf, pageHeader, warningBox } from "./verdict.js";
@@ -79,18 +79,17 @@ function doubtBox({ doubt }) {
   return doubt ? warningBox({ warnings: [{ where: "", text: `Their displacement ${doubt}` }] }) : null;
 }
 
-const intervalFigure = ({ relative }, name, note) => (relative?.[1] == null ? null
-  : figure(`${number(100 * relative[0], 3)} to ${percent(relative[1])}`, name, note));
+const intervalFigure = ({ relative }, name) => (relative?.[1] == null ? null
+  : figure(percent(relative[1]), `error of the ${name}, at most`, `at least ${percent(relative[0])}`));
 
 function figures(judgement) {
-  const { displacement, stress, cells, solution, quantities, penetration } = judgement;
+  const { displacement, stress, quantities, penetration } = judgement;
   return element("div", { class: "figures" }, [
-    displacement && intervalFigure(displacement, "error of the displacement", "energy norm, relative"),
-    stress && intervalFigure(stress, "error of the stress", "energy norm, relative"),
+    displacement && intervalFigure(displacement, "displacement"),
+    stress && intervalFigure(stress, "stress"),
     ...quantities.filter(({ wrong_by: wrong }) => wrong).slice(0, 3).map((quantity) =>
       figure(number(quantity.theirs, 5), quantity.name, `wrong by ${wrongText(quantity)}`)),
-    penetration > 0 ? figure(number(penetration, 3), "largest penetration", unit("length")) : null,
-    figure(count(solution.cells), "cells of theirs", displacement ? `${count(cells)} of ours` : null)].filter(Boolean));
+    penetration > 0 ? figure(number(penetration, 3), "largest penetration", unit("length")) : null].filter(Boolean));
 }
 
 export function judgementHeader({ judgement, program, machine }) {

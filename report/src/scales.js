@@ -6,15 +6,20 @@ import { statusColours, statusNames } from "./components.js";
 
 // Blue to orange through a light grey: distinguishable for everybody.
 const diverging = piecewise(interpolateRgb, ["#1f4e8c", "#5b8fc7", "#b3cde3", "#f2f2ef", "#f6c48f", "#d9822b", "#8f4a0b"]);
+const judged = ["#9aa3ad", "#e69f00", "#d55e00"];
 const categories = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#6b7580"];
+
+/** Whether the values are numbers of names. */
+export const isNamed = (kind) => kind === "category" || kind === "judged";
 
 /** The colour at s in [0, 1] for a kind of field. */
 export function colours(kind, range) {
   if (kind === "diverging") return diverging;
   if (kind === "status") return (s) => statusColours[Math.round(3 * s)];
-  if (kind === "category") {
+  if (isNamed(kind)) {
     const n = Math.max(1, Math.round(range.high - range.low));
-    return (s) => categories[Math.round(s * n) % categories.length];
+    const list = kind === "judged" ? judged : categories;
+    return (s) => list[Math.round(s * n) % list.length];
   }
   return interpolateViridis;
 }
@@ -52,7 +57,7 @@ export function fieldLegend(field, range, names) {
   const title = element("p", { class: "legend-title" }, field.label, field.unit ? element("span", {}, ` [${field.unit}]`) : null);
   const colour = colours(field.kind, range);
   if (field.kind === "status") return element("div", {}, title, listLegend(shownStates(range.present), (i) => colour(i / 3)));
-  if (field.kind === "category")
+  if (isNamed(field.kind))
     return element("div", {}, title, listLegend(names.slice(range.low, Math.floor(range.high) + 1), (i) => colour(i / Math.max(1, range.high - range.low))));
   const stops = Array.from({ length: 33 }, (_, i) => colour(1 - i / 32)).join(",");
   return element("div", { class: "colourbar-box" }, title,
