@@ -202,10 +202,13 @@ class Carrier
       for (std::size_t e = 0; e < block.size(); ++e, entry += block.type.n_nodes)
         for (int corner = 0; corner < table.n_corners; ++corner)
         {
-          std::vector<Element>& elements = elements_of_[clusters_[block.element(e)[corner]]];
-          if (!elements.empty() && elements.back().block == b && elements.back().number == e)
-            fail_digits(nodes_[block.element(e)[corner]]);
-          elements.push_back({b, e, entry});
+          const auto nodes = block.element(e);
+          std::vector<Element>& elements = elements_of_[clusters_[nodes[corner]]];
+          if (elements.empty() || elements.back().block != b || elements.back().number != e)
+            elements.push_back({b, e, entry});
+          else if (std::ranges::count(nodes.first(table.n_corners), nodes[corner]) <
+                   2)  // a prism as hexahedron has
+            fail_digits(nodes_[nodes[corner]]);
         }
     }
   }
