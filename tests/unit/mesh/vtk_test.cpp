@@ -113,6 +113,14 @@ TEST(Vtk, WithoutAnArrayThereIsOneRegion)
   EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("1 edges are in no boundary, since no array")));
 }
 
+TEST(Vtk, CountsMayHaveBlanks)
+{
+  const Directory directory;
+  std::string text = vtu({square("")});
+  text.replace(text.find("NumberOfCells=\"4\""), 17, "NumberOfCells=\" 4\"");
+  EXPECT_EQ(plane(directory, text).n_cells(), 2);
+}
+
 TEST(Vtk, TheArrayCanBeChosen)
 {
   const Directory directory;

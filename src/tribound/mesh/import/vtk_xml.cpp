@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tribound/mesh/import/file_text.h"
+#include "tribound/mesh/import/text_lines.h"
 #include "tribound/mesh/import/vtk_file.h"
 
 namespace tribound::mesh
@@ -124,7 +125,7 @@ void VtkXml::read_header(const pugi::xml_node& root)
 
 std::size_t VtkXml::count(const pugi::xml_node& node, const char* attribute) const
 {
-  const std::string_view text = node.attribute(attribute).value();
+  const std::string_view text = trimmed(node.attribute(attribute).value());  // FreeFEM: " 12"
   const auto number = integer_of(text);
   if (!number || *number < 0 || *number > std::ssize(*content_) * 1032)
     fail(fmt::format("{} of a <Piece> is \"{}\"", attribute, text.substr(0, 40)),
