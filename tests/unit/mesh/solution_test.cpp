@@ -246,8 +246,6 @@ TEST(Solution, OtherFilesAreRefused)
   expect_input_error([&] { return read_solution(directory / "none.vtu", {}); }, {"the file does not exist"});
   expect_input_error([&] { return read_solution(directory.write("a.odb", "x").path, {}); },
                      {"the format \".odb\" are not read", ".frd"});
-  expect_input_error([&] { return read_solution(directory.write("a.med", "x").path, {}); },
-                     {"the fields of a .med are not read", ".vtu"});
 }
 
 /// A solution or a message, for texts that are damaged at random.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -87,6 +88,21 @@ std::optional<std::int64_t> Hdf5Group::attribute(const std::string& name) const
   if (!space || !type || H5Sget_simple_extent_npoints(*space) != 1 || H5Tget_class(*type) != H5T_INTEGER ||
       H5Aread(*attribute, H5T_NATIVE_INT64, &value) < 0)
     fail(name);
+  return value;
+}
+
+std::optional<std::string> Hdf5Group::text(const std::string& name) const
+{
+  if (H5Aexists(*id_, name.c_str()) <= 0) return {};
+  const auto attribute = make_handle(H5Aopen(*id_, name.c_str(), H5P_DEFAULT), H5Aclose);
+  const auto space = attribute ? make_handle(H5Aget_space(*attribute), H5Sclose) : Handle{};
+  const auto type = attribute ? make_handle(H5Aget_type(*attribute), H5Tclose) : Handle{};
+  if (!space || !type || H5Sget_simple_extent_npoints(*space) != 1 || H5Tget_class(*type) != H5T_STRING ||
+      H5Tis_variable_str(*type) != 0)
+    fail(name);
+  std::string value(H5Tget_size(*type), '\0');
+  if (H5Aread(*attribute, *type, value.data()) < 0) fail(name);
+  value.resize(std::min(value.find('\0'), value.size()));
   return value;
 }
 

@@ -26,6 +26,9 @@ class Hdf5Group
   /// An attribute that is an integer; nothing if there is none with the name.
   [[nodiscard]] std::optional<std::int64_t> attribute(const std::string& name) const;
 
+  /// An attribute that is a text of fixed length; nothing if there is none with the name.
+  [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
+
   /// All numbers of an array.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& name) const;

@@ -25,11 +25,9 @@ ImportedSolution read_solution(const std::filesystem::path& file, const Solution
                      "leave the step out, and name the file of the step that is wanted");
   if (is_vtk) return read_vtk_solution(file, choice);
   if (suffix == ".csv") return read_csv(file, choice);
-  if (suffix == ".med")
-    throw InputError(where, "the fields of a .med are not read",
-                     "save the result as .vtu, with ParaVis (Salome) or ParaView");
+  if (suffix == ".med") return read_med_solution(file, choice);
   throw InputError(where, fmt::format("solutions of the format \"{}\" are not read", suffix),
-                   ".csv, .msh, .vtu, .pvtu, .vtk and .frd are; ParaView saves what it reads as .vtu");
+                   ".csv, .msh, .vtu, .pvtu, .vtk, .frd and .med are; ParaView saves what it reads as .vtu");
 }
 
 }  // namespace tribound::mesh

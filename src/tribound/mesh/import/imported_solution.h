@@ -35,7 +35,7 @@ struct SolutionChoice
   std::optional<int> step{};  ///< by the number that the file has; nothing: the last
 };
 
-/// Reads .csv, .msh, .vtu, .pvtu, .vtk and .frd, by the suffix.
+/// Reads .csv, .msh, .vtu, .pvtu, .vtk, .frd and .med, by the suffix.
 ///
 /// CSV: a header with x, y, z, ux, uy, uz, sxx, syy, szz, sxy, syz, sxz in any order, in 2D without those of
 /// z; columns between commas, semicolons, tabs or blanks; comments after '#'. `field` and `stress` replace
@@ -50,6 +50,9 @@ struct SolutionChoice
 /// 3 components, stresses those of VTK. Steps are counted as in the file, from 0.
 ///
 /// .frd of CalculiX, as text: steps are those of the deck; the last increment of a step is read.
+///
+/// .med of the versions 3 and 4: fields of nodes, which may be on profiles; components and names as of VTK's
+/// arrays. Steps are the numbers of the times (NDT).
 ///
 /// Components that a plane file does not have are 0. Throws InputError with the file and the line, node or
 /// array.

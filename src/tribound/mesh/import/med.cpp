@@ -16,6 +16,7 @@
 #include "tribound/mesh/import/face_centres.h"
 #include "tribound/mesh/import/file_text.h"
 #include "tribound/mesh/import/hdf5_group.h"
+#include "tribound/mesh/import/imported_bytes.h"
 #include "tribound/mesh/import/read_apart.h"
 
 namespace tribound::mesh
@@ -60,11 +61,11 @@ class MedReader
   {
   }
 
-  ImportedMesh read()
+  ImportedMesh read(bool has_groups)
   {
     read_nodes();
     read_elements();
-    read_families();
+    if (has_groups) read_families();
     add_cells();
     add_facets();
     add_node_sets();
@@ -303,11 +304,23 @@ void MedReader::add_node_sets()
   for (auto& [name, nodes] : groups) mesh_.node_sets.push_back({name, std::move(nodes)});
 }
 
+ImportedMesh read(const std::filesystem::path& file, bool has_groups)
+{
+  std::vector<std::string> no_notes;
+  return mesh_from(read_apart(file, "HDF5", [&] { return bytes_of(MedReader(file).read(has_groups)); }),
+                   {.file = file.string()}, no_notes);
+}
+
 }  // namespace
 
 ImportedMesh read_med(const std::filesystem::path& file)
 {
-  return read_apart(file, "HDF5", [&] { return MedReader(file).read(); });
+  return read(file, true);
+}
+
+ImportedMesh read_med_without_groups(const std::filesystem::path& file)
+{
+  return read(file, false);
 }
 
 }  // namespace tribound::mesh

@@ -22,4 +22,7 @@ namespace tribound::mesh
 /// regions that are not clear, faces of no cell.
 [[nodiscard]] ImportedMesh read_med(const std::filesystem::path& file);
 
+/// The mesh alone, whatever its groups are.
+[[nodiscard]] ImportedMesh read_med_without_groups(const std::filesystem::path& file);
+
 }  // namespace tribound::mesh

@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string_view>
+#include <utility>
 
 #include "tribound/base/apart.h"
 #include "tribound/mesh/gmsh_session.h"
@@ -12,8 +13,8 @@
 namespace tribound::mesh
 {
 
-ImportedMesh read_apart(const std::filesystem::path& file, const std::string& library,
-                        const std::function<ImportedMesh()>& read)
+std::string read_apart(const std::filesystem::path& file, const std::string& library,
+                       const std::function<std::string()>& read)
 {
   const Where where{.file = file.string()};
   const auto failure = [&](std::string_view what)
@@ -27,7 +28,7 @@ ImportedMesh read_apart(const std::filesystem::path& file, const std::string& li
     {
       const ReadingLimits most = reading_limits(file);
       limit_from_here(most.memory, most.seconds);
-      return bytes_of(read());
+      return read();
     }
     catch (const InputError& error)
     {
@@ -38,12 +39,11 @@ ImportedMesh read_apart(const std::filesystem::path& file, const std::string& li
       return bytes_of(failure(error.what()));
     }
   };
-  const ApartOutcome outcome = run_apart(work);
+  ApartOutcome outcome = run_apart(work);
   if (outcome.end == ApartEnd::out_of_time || outcome.end == ApartEnd::silent)
     throw failure("it takes too long for a sound file of this size");
   if (outcome.end != ApartEnd::complete) throw failure("it " + describe_end(outcome.status));
-  std::vector<std::string> none;
-  return mesh_from(outcome.result, where, none);
+  return std::move(outcome.result);
 }
 
 }  // namespace tribound::mesh

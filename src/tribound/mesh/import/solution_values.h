@@ -59,6 +59,8 @@ struct FieldName
 [[nodiscard]] ImportedSolution read_frd(const std::filesystem::path& file, const SolutionChoice& choice);
 [[nodiscard]] ImportedSolution read_gmsh_solution(const std::filesystem::path& file,
                                                   const SolutionChoice& choice);
+[[nodiscard]] ImportedSolution read_med_solution(const std::filesystem::path& file,
+                                                 const SolutionChoice& choice);
 [[nodiscard]] ImportedSolution read_vtk_solution(const std::filesystem::path& file,
                                                  const SolutionChoice& choice);
 
