@@ -66,6 +66,14 @@ TEST(Solution, ATableMayBePlaneAndHaveHoles)
               testing::ElementsAre(testing::HasSubstr("theirs.csv: left out are the columns \"p\"")));
 }
 
+TEST(Solution, AHeaderMayBeAComment)
+{
+  const Directory directory;
+  const auto file =
+      directory.write("a.csv", "# by x and y of NumPy\n# x y ux uy\n0e0 1e0 2e0 3e0\n1 1 4 5\n").path;
+  EXPECT_EQ(read_solution(file, {}).displacement.at(1), Point<3>(4, 5, 0));
+}
+
 TEST(Solution, TablesThatAreRefused)
 {
   const Directory directory;

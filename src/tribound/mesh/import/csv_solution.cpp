@@ -31,7 +31,8 @@ class CsvReader
 
  private:
   [[nodiscard]] bool next_row();
-  [[nodiscard]] std::vector<std::string_view> fields() const;
+  [[nodiscard]] std::vector<std::string_view> fields_of(std::string_view line) const;
+  [[nodiscard]] bool find_header();
   void read_header();
   void choose_columns();
   void choose_stress_columns();
@@ -64,10 +65,10 @@ bool CsvReader::next_row()
   return false;
 }
 
-std::vector<std::string_view> CsvReader::fields() const
+std::vector<std::string_view> CsvReader::fields_of(std::string_view line) const
 {
   std::vector<std::string_view> result;
-  std::string_view rest = lines_.line().substr(0, lines_.line().find('#'));
+  std::string_view rest = line.substr(0, line.find('#'));
   if (separator_ != '\t') rest = trimmed(rest);
   while (true)
   {
@@ -82,23 +83,39 @@ std::vector<std::string_view> CsvReader::fields() const
   }
 }
 
+/// The first line, or the first comment with the columns: NumPy writes its header as a comment.
+bool CsvReader::find_header()
+{
+  constexpr std::string_view separators = ";,\t";
+  while (lines_.next())
+  {
+    std::string_view line = trimmed(lines_.line());
+    const bool is_comment = line.starts_with('#');
+    if (is_comment) line = trimmed(line.substr(1));
+    if (line.empty()) continue;
+    const auto separator =
+        std::ranges::find_if(separators, [&](char c) { return line.find(c) != std::string_view::npos; });
+    separator_ = separator == separators.end() ? ' ' : *separator;
+    names_.clear();
+    for (const std::string_view name : fields_of(line)) names_.push_back(small_letters(name));
+    if (!is_comment || (column("x") >= 0 && column(displacement_ + "x") >= 0)) return true;
+  }
+  return false;
+}
+
 void CsvReader::read_header()
 {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (content_.starts_with(byte_order_mark)) content_.replace(0, byte_order_mark.size(), "   ");
-  if (!next_row())
+  if (!find_header())
     throw InputError(where_, "has no rows", "a header, x,y,z,ux,uy,uz, and a row for each node");
-  const auto separator = std::ranges::find_if(
-      std::string_view(";,\t"), [&](char c) { return lines_.line().find(c) != std::string_view::npos; });
-  separator_ = separator == std::string_view(";,\t").end() ? ' ' : *separator;
-  for (const std::string_view name : fields())
+  for (const std::string& name : names_)
   {
     if (number_of(name))
       lines_.fail("there is no header: the first row has numbers",
                   "the names of the columns, x,y,z,ux,uy,uz");
-    if (!name.empty() && std::ranges::find(names_, small_letters(name)) != names_.end())
+    if (!name.empty() && std::ranges::count(names_, name) > 1)
       lines_.fail(fmt::format("column \"{}\" stands there twice", name), "give one of them another name");
-    names_.push_back(small_letters(name));
   }
 }
 
@@ -176,7 +193,7 @@ double CsvReader::number(std::span<const std::string_view> row, int column) cons
 
 void CsvReader::read_row()
 {
-  const std::vector<std::string_view> row = fields();
+  const std::vector<std::string_view> row = fields_of(lines_.line());
   if (row.size() != names_.size())
     lines_.fail(fmt::format("the row has {} fields, the header {}", row.size(), names_.size()),
                 "is the file cut off, or a comma the decimal point?");

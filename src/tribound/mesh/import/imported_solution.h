@@ -38,8 +38,8 @@ struct SolutionChoice
 /// Reads .csv, .msh, .vtu, .pvtu, .vtk, .frd and .med, by the suffix.
 ///
 /// CSV: a header with x, y, z, ux, uy, uz, sxx, syy, szz, sxy, syz, sxz in any order, in 2D without those of
-/// z; columns between commas, semicolons, tabs or blanks; comments after '#'. `field` and `stress` replace
-/// the letters u and s.
+/// z; columns between commas, semicolons, tabs or blanks; comments after '#', which the header may be, too.
+/// `field` and `stress` replace the letters u and s.
 ///
 /// VTK: arrays of points. The components of the stress are those that their names end with, such as SIXX, if
 /// the file names all. Else they are 9 (tensors by rows: the symmetric part is taken), 6 (xx, yy, zz, xy, yz,

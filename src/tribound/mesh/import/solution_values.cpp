@@ -20,9 +20,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// In small letters, the surest first; of FEniCSx, MFEM, GetFEM, deal.II, CalculiX's converters, Salome.
 constexpr std::array<std::string_view, 9> usual_displacements = {
     "displacement", "displacements", "u", "disp", "depl", "deplacement", "uh", "u_h", "solution"};
-constexpr std::array<std::string_view, 12> usual_stresses = {
-    "stress",        "stresses",  "sigma",     "s",         "sig",     "cauchy_stress",
-    "cauchy stress", "sief_noeu", "sigm_noeu", "sief_elno", "sigma_h", "stress tensor"};
+constexpr std::array<std::string_view, 11> usual_stresses = {
+    "stress",        "stresses",  "sigma",     "s",       "sig",          "cauchy_stress",
+    "cauchy stress", "sief_noeu", "sigm_noeu", "sigma_h", "stress tensor"};
 
 /// Salome puts the name of the result before that of the field: "reslin__DEPL".
 bool is_usual(std::string_view name, std::string_view usual)
