@@ -22,7 +22,7 @@ _tribound()
       compopt -o filenames 2>/dev/null
       return ;;
     --solution)
-      mapfile -t COMPREPLY < <(compgen -f -- "$current" | grep -E '[.](csv|msh|vtu|pvtu|vtk|frd)$'; compgen -d -- "$current")
+      mapfile -t COMPREPLY < <(compgen -f -- "$current" | grep -E '[.](csv|msh|vtu|pvtu|vtk|frd|med)$'; compgen -d -- "$current")
       compopt -o filenames 2>/dev/null
       return ;;
     --jobs) candidates="1 2 4 8" ;;
