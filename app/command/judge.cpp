@@ -61,6 +61,7 @@ void prepare_to_judge(case_file::Config& config)
   config.adapt.bars.levels = adapt::EnergyLevels::every;
   if (config.history) return;  // which refines for all of its steps, to adapt.tolerance
   config.adapt.measure = adapt::ErrorMeasure::energy;
+  config.adapt.bars = {.levels = adapt::EnergyLevels::every};  // no goal and no tolerance of the case
   config.adapt.tolerance = 0;
 }
 
@@ -164,6 +165,7 @@ class Judge
       JudgedNumber& number = record_.numbers.emplace_back();
       number.interval.name = values.quantities[i].name;
       number.interval.reason = "not yet judged";
+      number.unit = record_.facts.unit_of(number.interval.name);
       if (follows_from_displacement(quantities_[i].kind)) number.theirs = values.quantities[i].value;
     }
     for (const std::string& text : request_.numbers)
@@ -225,7 +227,7 @@ ExitCode judge(const JudgeRequest& request, const case_file::Config& config, mes
   of_dimension.level = [&](const auto& level, const io::LevelRecord& record) { judge(level, record); };
   if (!config.history)
     of_dimension.stop = [&](const auto&)
-    { return judge.record().is_sharp() ? "their solution is judged as sharply as asked for" : ""; };
+    { return judge.record().is_settled() ? "their solution is judged" : ""; };
   const ExitCode code = run(request, {}, hooks);
   case_file::OutputConfig output = config.output;
   output.directory /= "judge";

@@ -168,9 +168,12 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
 {
   std::string text =
       line("theirs", fmt::format("{}: {}", r.solution, r.description)) +
-      paragraph("read as", fmt::format("{}; {} of the case's mesh, nodes up to {:.2g}{} from their places",
-                                       r.read_as, count(r.their_cells, "cell", "cells"), r.node_distance,
-                                       r.facts.behind(problem::UnitOf::length)));
+      paragraph("read as",
+                fmt::format("{}; {} of the case's mesh, nodes {} their places", r.read_as,
+                            count(r.their_cells, "cell", "cells"),
+                            r.node_distance > 0 ? fmt::format("up to {:.2g}{} from", r.node_distance,
+                                                              r.facts.behind(problem::UnitOf::length))
+                                                : std::string("at")));
   if (r.judgement)
   {
     const certify::Judgement& j = *r.judgement;

@@ -62,6 +62,8 @@ struct JudgementRecord
   void balance(const certify::Balance& ours);
   /// Whether the bound is at most `sharpness` times the distance.
   [[nodiscard]] bool is_sharp() const;
+  /// Whether that is so, or with `accept` whether the error is known to be below or above it.
+  [[nodiscard]] bool is_settled() const { return accept ? judgement && status() != "undecided" : is_sharp(); }
   /// "judged", "wide" (the interval is wider than asked for) or "no bound"; with `accept` "accepted",
   /// "rejected" or "undecided".
   [[nodiscard]] std::string status() const;
