@@ -16,16 +16,16 @@ function wordsOfCells({ displacement }) {
     element("p", { class: "note" }, `The distance in a cell, or in any union of cells, is its error to within ${measured(number(displacement.bound, 3), unit("energy_norm"))}, the bound of ours.`)];
 }
 
-function guaranteeSection({ displacement, stress, quantities, guaranteed_for: target }) {
+function guaranteeSection({ displacement, stress, quantities, guaranteed_for: target, read_as: readAs }) {
   if (!displacement) return null;
   const list = (items) => element("ul", {}, items.filter(Boolean).map((item) => element("li", {}, item)));
   return section("guarantee", "Guarantee", "What is guaranteed, and what not", null, element("div", { class: "two-columns" },
-    element("div", {}, element("h3", {}, "Guaranteed"), judgementFormula(), element("p", {}, `The error is measured against ${target}.`), list([
+    element("div", {}, element("h3", {}, "Guaranteed"), judgementFormula(), element("p", {}, `The error is measured against ${target}. Their solution is that which was read, as: ${readAs}.`), list([
       "the error of their displacement, as a whole and in every union of cells", stress ? "the error of their stress, likewise" : null,
       "the part of the squared error in its core", quantities.some(({ lower }) => lower !== null) ? "the interval of each exact number" : null])),
     element("div", {}, element("h3", {}, "Not guaranteed"), list([
       "rigid motions, which the energy does not see: below they are those between theirs and ours",
-      "what they would have on other meshes: halving the distance is what the cells say, not what their program does",
+      "what their program does on a mesh refined in the marked cells: that half of the distance lies there is known",
       "the colours of ours, which are those of the computed solution"]))));
 }
 

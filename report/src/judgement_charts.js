@@ -9,7 +9,7 @@ import { headed, quantityUnit, unit } from "./units.js";
 
 const ofInterval = "#0072b2";
 const ofTheirs = "#d55e00";
-const row = 34; // pixels
+const row = 40; // pixels
 
 /** Bars { name, low, high }, one below another; where `high` is null, to the end of the axis. `text(value)`: beside them. */
 function intervalChart({ title, name, label, bars, text }) {
@@ -20,8 +20,8 @@ function intervalChart({ title, name, label, bars, text }) {
     width, height: 60 + row * bars.length, marginLeft: 16, marginRight: 18, marginTop: 10, marginBottom: 42, style: chartStyle,
     x: { label, grid: true, domain: [0, end], ticks: Math.max(3, width / 110) }, y: { type: "band", axis: null, domain: bars.map((bar) => bar.name) },
     marks: [Plot.ruleX([0]),
-      Plot.barX(drawn, { x1: "low", x2: "end", y: "name", insetTop: 17, insetBottom: 6, fill: ofInterval, stroke: ofInterval, strokeWidth: 2 }),
-      Plot.text(drawn, { x: 0, y: "name", dx: 5, dy: -8, textAnchor: "start", fill: "currentColor", stroke: "var(--panel)", strokeWidth: 3,
+      Plot.barX(drawn, { x1: "low", x2: "end", y: "name", insetTop: 20, insetBottom: 7, fill: ofInterval, stroke: ofInterval, strokeWidth: 2 }),
+      Plot.text(drawn, { x: 0, y: "name", dx: 5, dy: -9, textAnchor: "start", fill: "currentColor", stroke: "var(--panel)", strokeWidth: 3,
         text: (d) => `${d.name}: ${d.words}` })],
   }), { share: 0.47, name, rows: () => bars.map((bar) => ({ of: bar.name, lower: bar.low, upper: bar.high })) });
   return element("figure", {}, element("h3", {}, title), chart);

@@ -46,8 +46,8 @@ export function wrongText({ name, wrong_by: wrong, lower, upper }) {
 function sentence(judgement) {
   const { status, displacement, accept, reason, guaranteed_for: target } = judgement;
   if (status === "no bound") return `The error of their solution is not bounded: ${reason}.`;
-  const error = displacement.relative ? `${relativeText(displacement.relative)} of the solution` : absoluteText(displacement.error, unit("energy_norm"));
-  const guaranteed = `The error of their displacement in the energy norm is ${error}, guaranteed, against ${target}.`;
+  const error = displacement.relative ? relativeText(displacement.relative) : absoluteText(displacement.error, unit("energy_norm"));
+  const guaranteed = `The error of their displacement in the energy norm, against ${target}, is guaranteed to be ${error}.`;
   if (accept !== null) return `${guaranteed} At most ${percent(accept)} was to be accepted.`;
   if (status !== "wide") return guaranteed;
   return `${guaranteed} The bound of ours is ${number(displacement.bound / displacement.distance, 3)} of the distance between both, `

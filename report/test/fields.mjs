@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { colours } from "./browser.mjs";
 
 /** Does something and expects the picture of `selector` to change. */
-async function changes(page, selector, what, action) {
+export async function changes(page, selector, what, action) {
   const picture = () => page.locator(selector).screenshot();
   const before = await picture();
   await action();
@@ -15,7 +15,7 @@ async function changes(page, selector, what, action) {
   assert.fail(`${what}: nothing changes`);
 }
 
-async function slide(page, id, value) {
+export async function slide(page, id, value) {
   await page.locator(id).evaluate((input, x) => { input.value = x; input.dispatchEvent(new Event("input")); }, value);
 }
 

@@ -1,6 +1,6 @@
 // node page_test.mjs <tribound> <folder with playwright-core> <directory for results>
 //
-// Runs cases, a study and a sweep, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its
+// Runs cases, a study and a sweep, judges solutions, opens their reports from disk in Chromium and uses them as a reader would. Exit code 77: the browser, its
 // driver or the page is missing.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -8,6 +8,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node
 import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
 import { saved, useBodies, useFields, usePlans } from "./fields.mjs";
+import { judge, useJudgement } from "./judgement.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
 
@@ -462,8 +463,24 @@ async function checkJoint(browser) {
   await page.close();
 }
 
-function report(name, directory, seconds) {
-  console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/report.html`).length / 1e6).toFixed(2)} MB`);
+/** The page of a judgement in 2D and 3D, in 3D also without WebGL. */
+async function checkJudgements(browser) {
+  for (const name of ["block", "cube"]) {
+    const directory = judge(program, `${results}/judged_${name}`, cases[name].text);
+    report(`judged ${name}`, directory, await useJudgement(browser, directory, `${results}/judged_${name}`), "judgement.html");
+    await checkNarrowAndDark(browser, pathToFileURL(`${directory}/judgement.html`).href);
+    if (name === "block") continue;
+    const plain = await launch(folder, { webgl: false });
+    try {
+      await useJudgement(plain, directory, `${results}/judged_without_webgl`);
+    } finally {
+      await plain.close();
+    }
+  }
+}
+
+function report(name, directory, seconds, file = "report.html") {
+  console.log(`${name}: opens in ${seconds.toFixed(2)} s, ${(readFileSync(`${directory}/${file}`).length / 1e6).toFixed(2)} MB`);
 }
 
 const browser = await launch(folder);
@@ -502,6 +519,7 @@ try {
   await checkJoint(browser);
   await checkStudy(browser, solve("study", study));
   await checkSweep(browser);
+  await checkJudgements(browser);
 } finally {
   await browser.close();
 }
