@@ -17,9 +17,9 @@ const paperWidth = 270; // CSS pixels of each picture on paper
 const manySegments = 30000; // beyond this, the mesh is not drawn
 const places = ["elsewhere", "core of the error", "core, to be refined"];
 
-/** What the third picture can show, cell by cell. */
+/** What the third picture can show, cell by cell; no distances where all are 0. */
 function cellFields({ distance, stress_distance: ofStress, place }) {
-  const field = (id, label, kind, values) => values && { id, label, kind, unit: isNamed(kind) ? "" : unit("energy_norm"), corners: (s) => faceValues(s, values) };
+  const field = (id, label, kind, values) => (isNamed(kind) || values?.some((value) => value > 0)) && { id, label, kind, unit: isNamed(kind) ? "" : unit("energy_norm"), corners: (s) => faceValues(s, values) };
   return [field("place", "where the error lies", "judged", place), field("distance", "distance of the displacements", "logarithmic", distance),
     field("stress-distance", "distance of the stresses", "logarithmic", ofStress)].filter(Boolean);
 }

@@ -50,7 +50,9 @@ function sentence(judgement) {
   const guaranteed = `The error of their displacement in the energy norm, against ${target}, is guaranteed to be ${error}.`;
   if (accept !== null) return `${guaranteed} At most ${percent(accept)} was to be accepted.`;
   if (status !== "wide") return guaranteed;
-  return `${guaranteed} The bound of ours is ${number(displacement.bound / displacement.distance, 3)} of the distance between both, `
+  const { bound, distance } = displacement;
+  const size = bound > distance ? "larger than" : `${number(bound / distance, 3)} of`;
+  return `${guaranteed} The bound of ours is ${size} the distance between both, `
     + `${number(judgement.sharpness)} was asked for: give [adapt] more levels, unknowns or time.`;
 }
 
