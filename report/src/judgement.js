@@ -25,7 +25,7 @@ function guaranteeSection({ displacement, stress, quantities, guaranteed_for: ta
       "the part of the squared error in its core", quantities.some(({ lower }) => lower !== null) ? "the interval of each exact number" : null])),
     element("div", {}, element("h3", {}, "Not guaranteed"), list([
       "rigid motions, which the energy does not see: below they are those between theirs and ours",
-      "what their program does on a mesh refined in the marked cells: that half of the distance lies there is known",
+      "what their program finds on a mesh refined in the marked cells",
       "the colours of ours, which are those of the computed solution"]))));
 }
 
@@ -47,7 +47,7 @@ function readSection(judgement) {
 
 export function judgementPage({ judgement, program, machine, files, surfaces }) {
   nameUnits(judgement.units);
-  const fields = comparisonSection(surfaces, judgement.cells, wordsOfCells(judgement));
+  const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
   const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
   return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, program, machine }), sections, start: fields.start, machine, program };

@@ -6,6 +6,7 @@ import { firstDirection, upAxis } from "./directions.js";
 import { count, element, number, section } from "./dom.js";
 import { exportButtons } from "./export.js";
 import { usualFactor, valueText } from "./field_words.js";
+import { hasCore } from "./judgement_words.js";
 import { overlay } from "./overlay.js";
 import { frameAspect, homeScale, Picture, placeText } from "./picture.js";
 import { valueAt } from "./pick.js";
@@ -15,12 +16,12 @@ import { unit } from "./units.js";
 
 const paperWidth = 270; // CSS pixels of each picture on paper
 const manySegments = 30000; // beyond this, the mesh is not drawn
-const places = ["elsewhere", "core of the error", "core, to be refined"];
+const places = ["elsewhere", "core", "core, to be refined"];
 
 /** What the third picture can show, cell by cell; no distances where all are 0. */
-function cellFields({ distance, stress_distance: ofStress, place }) {
+function cellFields({ distance, stress_distance: ofStress, place }, core) {
   const field = (id, label, kind, values) => (isNamed(kind) || values?.some((value) => value > 0)) && { id, label, kind, unit: isNamed(kind) ? "" : unit("energy_norm"), corners: (s) => faceValues(s, values) };
-  return [field("place", "where the error lies", "judged", place), field("distance", "distance of the displacements", "logarithmic", distance),
+  return [field("place", hasCore(core) ? "where the error lies" : "where theirs and ours differ", "judged", place), field("distance", "distance of the displacements", "logarithmic", distance),
     field("stress-distance", "distance of the stresses", "logarithmic", ofStress)].filter(Boolean);
 }
 
@@ -68,8 +69,8 @@ class Pane {
 }
 
 class Comparison {
-  constructor(data, nOurs) {
-    Object.assign(this, { data, nOurs });
+  constructor(data, judgement) {
+    Object.assign(this, { data, judgement });
     const is2d = data.theirs.dimension === 2;
     this.panes = ["Theirs", "Ours", "How far apart, cell by cell"].map((title) => new Pane(title, is2d));
     this.legend = element("div", { class: "view-legend" });
@@ -95,7 +96,7 @@ class Comparison {
     const [theirs, ours, cells] = await Promise.all([readSurface(this.data.theirs), readSurface(this.data.ours), this.readCells()]);
     this.surfaces = [theirs, ours];
     this.fields = fieldsOf(theirs, []).filter(({ group }) => group !== "Mesh");
-    this.cellFields = cellFields(cells);
+    this.cellFields = cellFields(cells, this.judgement.displacement.core);
     for (const [select, fields] of [[this.field, this.fields], [this.cells, this.cellFields]])
       select.replaceChildren(...fields.map(({ id, label }) => element("option", { value: id }, label)));
     this.field.value = "von_mises";
@@ -136,7 +137,7 @@ class Comparison {
     this.cellLegend.replaceChildren(fieldLegend(cells, cellRange, places));
     this.factorText.textContent = `\u00d7 ${number(factor, 3)}`;
     this.note.textContent = `${this.surfaces[0].dimension === 3 ? "Shown is the surface. " : ""}Both are drawn on their mesh of ${count(this.data.theirs.cells)} cells, `
-      + `ours was computed on ${count(this.nOurs)}; displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`;
+      + `ours was computed on ${count(this.judgement.cells)}; displacements are drawn ${factor === 1 ? "at true scale" : `${number(factor, 3)} times as large`}.`;
     this.draw();
   }
 
@@ -164,10 +165,10 @@ class Comparison {
   }
 }
 
-/** `nOurs`: cells that ours was computed on; `words`: what stands beside the cells. */
-export function comparisonSection(data, nOurs, words) {
+/** `words`: what stands beside the cells. */
+export function comparisonSection(data, judgement, words) {
   if (!data) return { element: null, start: async () => {} };
-  const view = new Comparison(data, nOurs);
+  const view = new Comparison(data, judgement);
   view.words.append(...words);
   return { element: section("fields", "Fields", "Theirs and ours", "With one colour scale, on their mesh.", view.element), start: () => view.start() };
 }

@@ -30,9 +30,12 @@ export function errorText({ relative, error }) {
   return relative ? `${relativeText(relative)}, ${size}` : size;
 }
 
-/** Where most of the error lies; nothing where no small part is certain to hold much. */
+/** Whether a small part of the body is certain to hold much of the error. */
+export const hasCore = ({ share }) => share >= 0.05;
+
+/** Where most of the error lies; nothing where that is not certain. */
 export function coreText({ share, volume, cells, centre }) {
-  if (share < 0.05) return null;
+  if (!hasCore({ share })) return null;
   return `At least ${Math.floor(100 * share)}\u00a0% of the squared error lies in ${percent(volume, 2)} of the body, ${plural(cells, "cell", "cells")}, around ${placeText(centre)}.`;
 }
 
