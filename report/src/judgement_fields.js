@@ -165,9 +165,11 @@ class Comparison {
   }
 }
 
-/** `words`: what stands beside the cells. */
+/** `words`: what stands beside the cells. `data`: null without a bound and of several processes. */
 export function comparisonSection(data, judgement, words) {
-  if (!data) return { element: null, start: async () => {} };
+  const none = async () => {};
+  if (!judgement.displacement) return { element: null, start: none };
+  if (!data) return { element: section("fields", "Fields", "Where theirs and ours differ", "Several processes have judged: the pictures are in judged.vtu.", words), start: none };
   const view = new Comparison(data, judgement);
   view.words.append(...words);
   return { element: section("fields", "Fields", "Theirs and ours", "With one colour scale, on their mesh.", view.element), start: () => view.start() };
