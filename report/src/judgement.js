@@ -1,12 +1,12 @@
 // The page of a judgement, with the data of app/page/judgement_page.cpp: how wrong the solution of another program is.
 
-import { count, element, number, section, table } from "./dom.js";
+import { count, element, number, section, table, withoutNoise } from "./dom.js";
 import { definitions, filesSection, timesAndMachine } from "./facts.js";
 import { errorsSection, judgedNumbersSection } from "./judgement_charts.js";
 import { comparisonSection } from "./judgement_fields.js";
 import { coreText, halvingText, judgementHeader, placeText } from "./judgement_words.js";
 import { judgementFormula } from "./math.js";
-import { measured, nameUnits, unit } from "./units.js";
+import { headed, measured, nameUnits, unit } from "./units.js";
 
 /** Where the error lies, what to refine, and what the picture says of a single cell. */
 function wordsOfCells({ displacement }) {
@@ -29,6 +29,18 @@ function guaranteeSection({ displacement, stress, quantities, guaranteed_for: ta
       "the colours of ours, which are those of the computed solution"]))));
 }
 
+/** The forces of their stress on the body, where it was read, beside those in equilibrium. */
+function forcesSection({ forces, d }) {
+  const known = forces.filter(({ ours }) => ours.length > 0);
+  if (known.length === 0) return null;
+  const axes = ["x", "y", "z"].slice(0, d);
+  const size = known.flatMap(({ theirs, ours }) => [...theirs, ...ours]).reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);
+  const cells = (force) => withoutNoise(force, size).map((value) => number(value, 5));
+  const heads = (whose) => axes.map((axis) => headed(`#${whose}, ${axis}`, unit("force")));
+  return section("forces", "Forces", "Forces of their stress", "On the body at each boundary; those of ours are in equilibrium with all loads.",
+    table(["boundary", ...heads("theirs"), ...heads("in equilibrium")], known.map(({ boundary, theirs, ours }) => [boundary, ...cells(theirs), ...cells(ours)])));
+}
+
 function rigidTable({ rigid_difference: rigid }) {
   if (rigid.length === 0) return null;
   return [element("h3", {}, "Rigid motions between theirs and ours"),
@@ -48,7 +60,7 @@ function readSection(judgement) {
 export function judgementPage({ judgement, program, machine, files, surfaces }) {
   nameUnits(judgement.units);
   const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
-  const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), guaranteeSection(judgement), readSection(judgement),
+  const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
   return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, program, machine }), sections, start: fields.start, machine, program };
 }

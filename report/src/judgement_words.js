@@ -70,6 +70,11 @@ export function halvingText({ halving_cells: cells }) {
   return `Refine the ${plural(cells, "cell", "cells")} that judged_cells.csv marks: without them at most half of the distance is left.`;
 }
 
+/** Whether the forces of their stress add up. */
+function balanceText({ imbalance }) {
+  return imbalance === null ? null : `The forces of their stress miss the loads by ${percent(imbalance, 4)}.`;
+}
+
 function verdictBody(judgement) {
   const { displacement, stress } = judgement;
   return [element("p", {}, sentence(judgement)), definitions([
@@ -77,6 +82,7 @@ function verdictBody(judgement) {
     ["Stress", stress && errorText(stress)],
     ["Where", displacement && coreText(displacement.core)],
     ["To halve it", displacement && halvingText(displacement)],
+    ["Balance", balanceText(judgement)],
     ["Penetration", penetrationText(judgement)]])];
 }
 

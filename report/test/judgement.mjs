@@ -32,6 +32,8 @@ async function checkWords(page, directory, judgement) {
   assert((await page.locator("#guarantee").textContent()).includes(judgement.guaranteed_for));
   assert((await page.locator("#read").textContent()).includes(judgement.solution.description));
   assert((await page.locator("#fields .beside").textContent()).includes(`${judgement.displacement.halving_cells} cells`));
+  assert.equal(await page.locator("#forces tbody tr").count(), judgement.forces.length);
+  assert(verdict.includes(`miss the loads by ${shown(100 * judgement.imbalance, 4)}\u00a0%`), verdict);
   const links = await page.locator("section a").evaluateAll((list) => list.map((a) => a.getAttribute("href")));
   for (const link of ["report.html", "judgement.json", "judged_cells.csv", "judged.vtu"]) assert(links.includes(link), `no link to ${link}`);
   for (const link of links) assert(existsSync(`${directory}/${link}`), `${link} does not exist`);
