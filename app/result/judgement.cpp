@@ -62,21 +62,22 @@ std::string core_text(const certify::ErrorCore& core)
 std::string number_text(const JudgedNumber& number)
 {
   const std::string& name = number.interval.name;
+  const std::string caption = name.size() < caption_width ? name : name + "  ";
   const std::string unit = number.unit.empty() ? "" : " " + number.unit;
   if (!number.interval.reason.empty())
-    return line(name, (number.theirs ? fmt::format("{:.6g}{}, ", *number.theirs, unit) : std::string()) +
-                          "not judged: " + number.interval.reason);
+    return line(caption, (number.theirs ? fmt::format("{:.6g}{}, ", *number.theirs, unit) : std::string()) +
+                             "not judged: " + number.interval.reason);
   const std::string exact = number.interval.exact
                                 ? fmt::format("exact: {:.6g}{}", number.interval.lower, unit)
                                 : fmt::format("exact: between {:.6g} and {:.6g}{}", number.interval.lower,
                                               number.interval.upper, unit);
   const auto wrong = number.wrong_by();
-  if (!wrong) return line(name, fmt::format("{}; theirs is not known: --number {}=VALUE", exact, name));
+  if (!wrong) return line(caption, fmt::format("{}; theirs is not known: --number {}=VALUE", exact, name));
   const double size = std::max(std::abs(number.interval.lower), std::abs(number.interval.upper));
   const std::string parts =
       size > 0 ? fmt::format(", {} to {}", percent(wrong->lower / size), percent(wrong->upper / size)) : "";
-  return line(name, fmt::format("{:.6g}{}; {}; wrong by {:.3g} to {:.3g}{}", *number.theirs, unit, exact,
-                                wrong->lower, wrong->upper, parts));
+  return line(caption, fmt::format("{:.6g}{}; {}; wrong by {:.3g} to {:.3g}{}", *number.theirs, unit, exact,
+                                   wrong->lower, wrong->upper, parts));
 }
 
 io::Json json(const certify::ErrorInterval& interval)
@@ -203,12 +204,15 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
                                                   r.facts.behind(problem::UnitOf::length), r.penetrated)
                                     : std::string("none at the points of contact"));
   const std::string status = r.status();
-  const std::string why = status == "wide"
-                              ? fmt::format(
-                                    ": the bound is {:.3g} of the distance, judge.sharpness = {:g}; give "
-                                    "[adapt] more levels, unknowns or time",
-                                    r.judgement->bound / r.judgement->displacement.distance, r.sharpness)
-                              : std::string();
+  std::string why;
+  if (status == "wide")
+  {
+    const double part = r.judgement->bound / r.judgement->displacement.distance;
+    why = fmt::format(
+        ": the bound is {} the distance, judge.sharpness = {:g}; give [adapt] more levels, unknowns or "
+        "time",
+        part <= 1 ? fmt::format("{:.3g} of", part) : std::string("larger than"), r.sharpness);
+  }
   return text + paragraph("status", status + why) + line("results", directory);
 }
 
