@@ -26,6 +26,9 @@ TEST(SolutionOfPrograms, ViewsOfGmshAreOfNodesOrOfElements)
   const Directory directory;
   for (const mesh::ElementType& type : testing_mesh::cell_types)
   {
+#ifdef __SANITIZE_ADDRESS__  // Gmsh 4.8 deletes an array of prisms as if it were one object
+    if (type.shape == Shape::prism) continue;
+#endif
     const mesh::ImportedMesh mesh = box(type);
     const bool is_new = type.n_nodes % 2 == 0;
     const std::string text = testing_mesh::msh(mesh, is_new);
