@@ -32,27 +32,37 @@ class _Message:
 class Work(threading.Thread, Generic[T]):
     """A command in a thread. One at a time computes in a process: MPI, PETSc and Gmsh allow no more."""
 
-    _current: "Work[Any] | None" = None
-    _lock = threading.Lock()
+    _current: "Work[Any] | None" = None  # the last that has begun, until it ends
+    _is_closed = False
+    _lock = threading.Lock()  # of these two
+    _computing = threading.Lock()
 
     def __init__(self, command: "Callable[[Work[T]], T]", prints: bool) -> None:
-        super().__init__(name="tribound")
+        super().__init__(name="tribound", daemon=True)  # _end() waits for it: the interpreter would wait for ever
         self.prints = prints
         self._command = command
         self._messages: queue.SimpleQueue[_Message | None] = queue.SimpleQueue()
         self._replies: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
         self._is_abandoned = False
+        self._has_ended = threading.Event()
         self._result: list[T] = []
         self._failure: BaseException | None = None
 
     def run(self) -> None:
         """The thread itself; not for callers."""
         try:
-            self._result.append(self._command(self))
+            with Work._computing:  # after the end of a run that has been abandoned
+                _tribound.forget_stop()
+                self.go_on()
+                self._result.append(self._command(self))
         except BaseException as failure:  # passed on to the caller
             self._failure = failure
         finally:
             del self._command
+            with Work._lock:
+                if Work._current is self:  # kept, it would keep its result
+                    Work._current = None
+            self._has_ended.set()
             self._messages.put(None)
 
     # ---- in the thread
@@ -82,21 +92,21 @@ class Work(threading.Thread, Generic[T]):
 
     def values(self) -> Iterator[Any]:
         """Runs the command and yields what it shows. Closed early, it ends as the program does by Ctrl-C."""
-        self._claim()
         try:
+            self._claim()
             for message in iter(self._messages.get, None):
                 if message.function is None:
                     yield message.arguments[0]
                     self._replies.put((None, None))
                 else:
                     self._reply(message)
+            self.join()
         except GeneratorExit:
             self._finish()
             raise
-        except BaseException:
-            self._leave()
-            raise
-        self.join()
+        finally:  # Ctrl-C may come at any line above
+            if Work._current is self:
+                self._leave()
         if self._failure is not None:
             try:
                 raise self._failure
@@ -121,15 +131,16 @@ class Work(threading.Thread, Generic[T]):
     def _claim(self) -> None:
         with Work._lock:
             busy = Work._current
-            if busy is not None and busy.is_alive():
-                if not busy._is_abandoned:
-                    raise RuntimeError(
-                        "Tribound computes already in this process, and it can do one thing at a time: wait for it, "
-                        "or take a process of its own for each run"
-                    )
-                busy.join()
+            if Work._is_closed or (busy is not None and not busy._is_abandoned):
+                raise RuntimeError(
+                    "Tribound computes already in this process, and it can do one thing at a time: wait for it, "
+                    "or take a process of its own for each run"
+                    if busy
+                    else "Tribound cannot compute any more: the interpreter ends"
+                )
             _tribound.start()
-            _tribound.forget_stop()
+            atexit.unregister(_end)
+            atexit.register(_end)  # before the handlers of what the run uses, such as its temporary directory
             Work._current = self
             self.start()
 
@@ -146,7 +157,17 @@ class Work(threading.Thread, Generic[T]):
         self._is_abandoned = True
         _tribound.request_stop()
         self._replies.put((None, Abandoned()))
-        self.join(_PATIENCE)
+        self._has_ended.wait(_PATIENCE)
+
+
+def _end() -> None:
+    """Ends a run that the interpreter does not wait for, such as that of a generator left half-way."""
+    with Work._lock:
+        Work._is_closed = True
+        work = Work._current
+    if work is not None:
+        work._leave()
+    Work._computing.acquire()
 
 
 def _print(text: str) -> None:

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -100,6 +101,55 @@ tb.run({LARGE!r})
         ended = python(script)
         self.assertIn("KeyboardInterrupt", ended.stderr)
         self.assertEqual(ended.returncode, -signal.SIGINT, ended.stderr)
+
+    def test_ctrl_c_at_any_time_leaves_the_next_run_alone(self) -> None:
+        case = block(2, 2)
+        begin = time.monotonic()
+        bound = tb.run(case).bound
+        longest = time.monotonic() - begin
+        before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        n_interrupted = 0
+        try:
+            for i in range(40):
+                try:
+                    signal.setitimer(signal.ITIMER_REAL, (i + 1) / 40 * longest)
+                    try:
+                        tb.run(case, directory=directory.name, on_level=lambda level: level.eta)
+                    finally:
+                        signal.setitimer(signal.ITIMER_REAL, 0)
+                except KeyboardInterrupt:
+                    n_interrupted += 1
+                self.assertEqual(tb.run(case).bound, bound)
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        self.assertGreater(n_interrupted, 10)
+
+
+class EndOfTheInterpreter(unittest.TestCase):
+    """A run that nobody ends does not keep the process, nor does the end of MPI come before its own."""
+
+    def check_ends(self, script: str) -> None:
+        ended = python(script)
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "end\n", ""))
+
+    def test_a_generator_left_half_way(self) -> None:
+        self.check_ends("import tribound as tb\nlevels = tb.levels(block(2, 2))\nnext(levels)\nprint('end')")
+
+    def test_a_run_in_a_daemon_thread(self) -> None:
+        self.check_ends(f"""
+import threading, tribound as tb
+begun = threading.Event()
+def run():
+    try:
+        tb.run({LARGE!r}, on_step=lambda step: begun.set())
+    except BaseException:
+        pass
+threading.Thread(target=run, daemon=True).start()
+begun.wait()
+print('end')
+""")
 
 
 class Memory(unittest.TestCase):
