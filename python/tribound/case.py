@@ -3,6 +3,7 @@
 import inspect
 import os
 from collections.abc import Callable, Mapping
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -25,22 +26,35 @@ class Function:
     def __init__(self, f: Datum, degree: int | None = None) -> None:
         if not callable(f):
             raise TypeError(f"{f!r} is no function")
-        self.call = f
+        if degree is not None and index(degree) < 0:
+            raise ValueError(f"the degree of a polynomial is {degree}: 0 or more, None for other functions")
+        self._f = f
         self.degree = degree
         self.uses_time = _takes_time(f)
 
-    def component(self, index: int, n: int, key: str) -> "Function":
-        """A component of a function that returns an array of shape (n, number of points)."""
+    def call(self, x: NDArray[np.float64], *t: float) -> Any:
+        """What f returns; what it masks is undefined."""
+        values: Any = self._f(x, *t)
+        if isinstance(values, np.ma.MaskedArray):
+            values = values.astype(float)
+            values = values.filled(np.nan)
+        return values
 
-        def call(x: NDArray[np.float64], *t: float) -> NDArray[np.float64]:
-            values = np.asarray(self.call(x, *t))
+    def component(self, i: int, n: int, key: str) -> "Function":
+        """A component of a function that returns an array of shape (n, number of points), or a list of n."""
+
+        def call(x: NDArray[np.float64], *t: float) -> Any:
+            returned = self.call(x, *t)
+            if isinstance(returned, list | tuple) and len(returned) == n:
+                return returned[i]
+            values = np.asarray(returned)
             if values.shape not in ((n, x.shape[1]), (n, 1), (n,)):
                 raise InputError.at(
                     key,
                     f"the function returns an array of shape {values.shape} for {x.shape[1]} points",
                     f"({n}, {x.shape[1]})",
                 )
-            return np.broadcast_to(values[index], x.shape[1])
+            return np.broadcast_to(values[i], x.shape[1])
 
         one = Function(call, self.degree)
         one.uses_time = self.uses_time
@@ -54,7 +68,13 @@ def _takes_time(f: Datum) -> bool:
     except (TypeError, ValueError):  # of some functions in C nothing is known
         return False
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    return sum(p.kind in positional and p.default is inspect.Parameter.empty for p in parameters) > 1
+    others = [p for p in parameters if p.kind in positional][1:]
+    if others and others[0].name == "t" and others[0].default is not inspect.Parameter.empty:
+        raise TypeError(
+            f"{f!r} has a default for t, so that it is not known whether t is the load factor: "
+            "f(x, t) if it is, another name if it is not"
+        )
+    return any(p.default is inspect.Parameter.empty for p in others)
 
 
 class Case:
@@ -68,6 +88,12 @@ class Case:
     def __init__(
         self, source: Mapping[str, Any] | str, *, set: Mapping[str, Any] | None = None, name: str = "case"
     ) -> None:
+        if not isinstance(source, Mapping | str):
+            hint = "tb.Case.read(file)" if isinstance(source, os.PathLike) else "a dict, or TOML text"
+            raise TypeError(f"a case is made of {type(source).__name__}; right would be {hint}")
+        if isinstance(source, str) and source.endswith(".toml") and "\n" not in source:
+            problem = "is the name of a file, where the text of a case stands"
+            raise InputError.at(source, problem, f"tb.Case.read({source!r})", name)
         self.source = source
         self.name = name
         self.overrides = dict(set or {})
@@ -93,11 +119,21 @@ class Case:
 
     def assignments(self) -> list[str]:
         """The overrides, as `--set` has them."""
-        return [f"{key}={_tribound.to_toml(value)}" for key, value in self.overrides.items()]
+        return [f"{key}={_assigned(key, value)}" for key, value in self.overrides.items()]
 
     def __repr__(self) -> str:
         keys = "TOML" if isinstance(self.source, str) else ", ".join(self.source)
         return f"tribound.Case({self.name}: {keys})"
+
+
+def _assigned(key: str, value: Any) -> str:
+    """The value as TOML."""
+    if _has_functions(value):
+        raise InputError.at(key, "is a function", "functions stand in the dictionary of the case", "set")
+    try:
+        return _tribound.to_toml(_prepared(value, key, lambda: 0))
+    except InputError as error:
+        raise InputError.at(key, error.problem, error.hint, "set") from None
 
 
 def _is_function(value: Any) -> bool:
@@ -123,9 +159,12 @@ def _prepared(value: Any, key: str, dimension: Callable[[], int]) -> Any:
             for name, item in value.items()
         }
     if isinstance(value, list | tuple):
-        return [item if not _is_function(item) else _function(item) for item in value] if not any(
-            isinstance(item, Mapping) for item in value
-        ) else [_prepared(item, f"{key}[{i}]", dimension) for i, item in enumerate(value)]
+        return [
+            _function(item) if _is_function(item) else _prepared(item, f"{key}[{i}]", dimension)
+            for i, item in enumerate(value)
+        ]
+    if isinstance(value, np.bool_):  # for C++ a number
+        return bool(value)
     if not _is_function(value):
         return value
     name = key.rsplit(".", 1)[-1]

@@ -52,6 +52,9 @@ class Sources(unittest.TestCase):
         case["boundary"]["left"] = {"displacement": np.zeros(2)}
         self.assertEqual(tb.run(case).certificate["p"], 2)
 
+    def test_truth_values_of_numpy(self) -> None:
+        tb.check({**block(2, 2), "output": {"report": np.bool_(False)}}, set={"output.vtu": np.bool_(True)})
+
     def test_set(self) -> None:
         case = tb.Case(TOML, set={"degree": 1, "boundary.top.traction": [0, "-0.2*x"]})
         result = tb.run(case, set={"material.nu": 0.2, "adapt.tolerance": 0.5})
@@ -104,6 +107,11 @@ class Functions(unittest.TestCase):
     def test_one_number_serves_all_points(self) -> None:
         constant = tb.run(with_data("boundary.top.traction", [0, lambda x: -0.1]))
         self.assertAlmostEqual(constant.level.resultant("top").force[1], -0.2, places=12)
+
+    def test_a_list_of_components(self) -> None:
+        parts = with_data("boundary.top.traction", [0, lambda x: -0.1 * x[0]])
+        whole = with_data("boundary.top.traction", lambda x: [0, -0.1 * x[0]])
+        self.assertEqual(tb.run(whole).bound, tb.run(parts).bound)
 
     def test_load_factor(self) -> None:
         history = {"history": {"steps": [0.5, 1.0]}, "adapt": {"tolerance": 0.5}}
@@ -186,6 +194,47 @@ class Errors(unittest.TestCase):
     def test_directions_are_formulas(self) -> None:
         contact = {"friction": "none", "normal": lambda x: x}
         self.fails(with_data("boundary.bottom", {"contact": contact}), "boundary.bottom.contact.normal[0]", "function")
+
+    def test_what_is_masked_is_undefined(self) -> None:
+        def load(x: np.ndarray[Any, Any]) -> Any:
+            return np.ma.masked_array(0.1 + x[0], x[0] > 1)
+
+        self.fails(with_data("boundary.top", {"pressure": load}), "boundary.top.pressure", "nan")
+        self.fails(with_data("boundary.top.traction", lambda x: [0, -load(x)]), "boundary.top.traction[1]", "nan")
+
+    def test_a_default_of_the_load_factor_is_refused(self) -> None:
+        with self.assertRaisesRegex(TypeError, "default for t"):
+            tb.Function(lambda x, t=1.0: t * x[0])
+
+    def test_degrees_are_numbers(self) -> None:
+        self.assertRaises(ValueError, tb.Function, np.sin, -1)
+        self.assertRaises(TypeError, tb.Function, np.sin, 1.5)
+
+    def test_other_things_than_cases(self) -> None:
+        with self.assertRaisesRegex(tb.InputError, r"hint: tb.Case.read\('case.toml'\)"):
+            tb.run("case.toml")
+        with self.assertRaisesRegex(TypeError, "tb.Case.read"):
+            tb.Case(Path("case.toml"))  # type: ignore[arg-type]
+        with self.assertRaisesRegex(TypeError, "a case is made of int"):
+            tb.run(5)  # type: ignore[arg-type]
+
+    def test_errors_of_set_name_the_key(self) -> None:
+        for value in (None, lambda x: x[0]):
+            with self.assertRaises(tb.InputError) as caught:
+                tb.run(block(2, 2), set={"boundary.top.pressure": value})
+            self.assertEqual(caught.exception.key, "boundary.top.pressure")
+
+    def test_lists_within_themselves(self) -> None:
+        endless: list[Any] = []
+        endless.append(endless)
+        self.assertRaises(RecursionError, tb.run, {**block(2, 2), "title": endless})
+
+    def test_functions_of_vectors_need_the_dimension(self) -> None:
+        case = with_data("boundary.top.traction", lambda x: 0 * x)
+        mesh = case.pop("mesh")
+        self.fails(case, "mesh", "dimension")
+        self.fails({**case, "mesh": {"box": {"upper": [1, 1]}}}, "mesh", "dimension")
+        self.assertTrue(tb.run(case, set={"mesh": mesh}).is_certified)
 
     def test_functions_have_no_checkpoints(self) -> None:
         case = {**with_data("boundary.top.traction", [0, lambda x: -0.1]), "output": {"checkpoint": True}}
