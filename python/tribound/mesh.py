@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribound import _tribound
 from tribound.errors import InputError
-from tribound.msh import write_msh
+from tribound.msh import ELEMENTS, write_msh
 
 Ints = NDArray[np.int32]
 Floats = NDArray[np.float64]
@@ -173,8 +173,18 @@ def _fail(argument: str, problem: str, hint: str) -> InputError:
     return InputError.at(argument, problem, hint, file="mesh")
 
 
+def _array(values: ArrayLike, name: str, kinds: str, hint: str) -> NDArray[Any]:
+    """A copy, so that the mesh stays what it is."""
+    array = np.array(values, subok=True)
+    if isinstance(array, np.ma.MaskedArray) and np.any(array.mask):
+        raise _fail(name, "is masked in some places", "whole arrays")
+    if array.size and array.dtype.kind not in kinds:
+        raise _fail(name, f"has the type {array.dtype}", hint)
+    return np.asarray(array)
+
+
 def _numbers(points: ArrayLike, name: str) -> Floats:
-    array = np.asarray(points, dtype=np.float64)
+    array = _array(points, name, "fiu", "real numbers").astype(np.float64)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise _fail(name, f"has the shape {array.shape}", "(n, 2) in 2D, (n, 3) in 3D")
     if not np.isfinite(array).all():
@@ -183,9 +193,7 @@ def _numbers(points: ArrayLike, name: str) -> Floats:
 
 
 def _indices(values: ArrayLike, name: str, below: int) -> NDArray[np.int64]:
-    array = np.asarray(values)
-    if array.size and array.dtype.kind not in "iu":
-        raise _fail(name, f"has the type {array.dtype}", "integers, counted from 0")
+    array = _array(values, name, "iu", "integers, counted from 0")
     if array.size and (array.min() < 0 or array.max() >= below):
         raise _fail(name, f"has the number {array.min() if array.min() < 0 else array.max()}", f"0 to {below - 1}")
     return array.astype(np.int64)
@@ -195,6 +203,8 @@ def _elements(values: ArrayLike, name: str, n_points: int, kinds: Mapping[int, s
     array = _indices(values, name, n_points)
     if array.ndim != 2 or array.shape[1] not in kinds:
         shapes = ", ".join(f"(n, {k}): {kind}" for k, kind in kinds.items())
+        if kinds is _CELLS[3]:
+            shapes += "; points of a plane mesh have the shape (n, 2)"
         raise _fail(name, f"has the shape {array.shape}", shapes)
     return kinds[array.shape[1]], array
 
@@ -204,6 +214,10 @@ def _cell_blocks(
 ) -> list[tuple[str, NDArray[np.int64]]]:
     n_points, d = shape
     if isinstance(cells, Mapping):
+        for kind in cells:
+            if kind not in ELEMENTS or ELEMENTS[kind][1] != d:
+                known = ", ".join(name for name, (_, of, _) in ELEMENTS.items() if of == d)
+                raise _fail("cells", f"has {kind!r}, no cells of a mesh in {d}D", known)
         return [(kind, _indices(block, f"cells of {kind}", n_points)) for kind, block in cells.items()]
     return [_elements(cast(ArrayLike, cells), "cells", n_points, _CELLS[d])]
 

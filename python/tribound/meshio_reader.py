@@ -70,7 +70,10 @@ def _groups(mesh: Any, blocks: list[tuple[str, NDArray[Any]]]) -> dict[str, list
     groups: dict[str, list[NDArray[Any]]] = {}
     for name, members in (mesh.cell_sets or {}).items():
         if not name.startswith("gmsh:"):
-            groups[name] = [empty if m is None else np.asarray(m, dtype=int) for m in members]
+            groups[name] = [
+                empty if numbers is None else _members(numbers, name, len(data))
+                for numbers, (_, data) in zip(members, blocks, strict=True)
+            ]
     tags = (mesh.cell_data or {}).get("gmsh:physical")
     if tags is not None:
         names = {(int(tag), int(dim)): name for name, (tag, dim) in (mesh.field_data or {}).items()}
@@ -81,3 +84,10 @@ def _groups(mesh: Any, blocks: list[tuple[str, NDArray[Any]]]) -> dict[str, list
                 name = names.get((int(tag), ELEMENTS[kind][1]), f"group_{tag}")
                 groups.setdefault(name, [empty] * len(blocks))[index] = np.flatnonzero(of_block == tag)
     return groups
+
+
+def _members(numbers: Any, name: str, count: int) -> NDArray[Any]:
+    array = np.asarray(numbers)
+    if array.size and (array.dtype.kind not in "iu" or array.min() < 0 or array.max() >= count):
+        raise InputError.at(name, "has other members than cells of its block", f"integers from 0 to {count - 1}", "mesh")
+    return array.astype(int)

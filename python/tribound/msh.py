@@ -57,8 +57,9 @@ def write_msh(
         out.write(b"$MeshFormat\n2.2 1 8\n" + np.int32(1).tobytes() + b"\n$EndMeshFormat\n")
         out.write(f"$PhysicalNames\n{len(names)}\n".encode())
         for tag, (dimension, name) in enumerate(names, 1):
-            if not name or '"' in name or "\n" in name:
-                raise InputError.at("regions and boundaries", f"has the name {name!r}", "without quotes", "mesh")
+            if not isinstance(name, str) or not name.strip() or '"' in name or not name.isprintable() or len(name) > 100:
+                hint = "at most 100 printable characters without quotes"
+                raise InputError.at("regions and boundaries", f"has the name {name!r}", hint, "mesh")
             out.write(f'{dimension} {tag} "{name}"\n'.encode())
         out.write(f"$EndPhysicalNames\n$Nodes\n{len(points)}\n".encode())
         out.write(_nodes(points) + b"\n$EndNodes\n")

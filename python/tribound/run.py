@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tribound import _tribound
 from tribound.case import Case
+from tribound.errors import InputError
 from tribound.level import Level
 from tribound.mesh import Mesh
 from tribound.result import Result, Step, Study, Verification
@@ -48,7 +49,10 @@ class Input:
         self, case: AnyCase, mesh: Mesh | None, set: Mapping[str, Any] | None, place: Place
     ) -> None:
         self._case = case if isinstance(case, Case) else Case(case)
+        if not isinstance(mesh, Mesh | None):
+            raise TypeError(f"a mesh is a tb.Mesh, such as tb.Mesh.read(file), and not a {type(mesh).__name__}")
         self._mesh = mesh
+        self._set = set or {}
         self.document = self._case.document(self._dimension)
         self.overrides = self._case.assignments() + Case({}, set=set).assignments()
         if mesh is not None:
@@ -60,13 +64,17 @@ class Input:
     def _dimension(self) -> int:
         if self._mesh is not None:
             return self._mesh.dimension
-        table = self._case.source.get("mesh", {}) if isinstance(self._case.source, Mapping) else {}
-        if "box" in table:
-            return len(table["box"]["cells"])
-        if "boxes" in table:
-            return len(next(iter(table["boxes"].values()))["cells"])
-        options = {key: value for key, value in table.items() if key != "file"}
-        return Mesh.read(table["file"], **options).dimension
+        source = self._case.source if isinstance(self._case.source, Mapping) else {}
+        table = {**source, **self._case.overrides, **self._set}.get("mesh")
+        if isinstance(table, Mapping):
+            for box in [table.get("box"), *(table.get("boxes") or {}).values()]:
+                if isinstance(box, Mapping) and "lower" in box:
+                    return len(box["lower"])
+            if "file" in table:
+                return Mesh.read(**table).dimension
+        raise InputError.at(
+            "mesh", "does not tell the dimension, on which functions of vectors depend", "a box, a file, or a Mesh"
+        )
 
 
 class Hooks:
@@ -109,8 +117,11 @@ class Hooks:
 
     def _mark(self, mark: Callable[[Level], ArrayLike]) -> Callable[[Any], NDArray[np.int64]]:
         def marked(core: Any) -> NDArray[np.int64]:
-            cells = np.asarray(self._work.call(mark, Level(core)))
+            level = Level(core)
+            cells = np.asarray(self._work.call(mark, level))
             if cells.dtype == bool:
+                if cells.shape != level.eta.shape:
+                    raise IndexError(f"the marking returns {cells.shape} truth values for {len(level.eta)} cells")
                 cells = np.flatnonzero(cells)
             if cells.ndim != 1 or (cells.size and cells.dtype.kind not in "iu"):
                 raise TypeError("a marking returns the numbers of cells, or one truth value per cell")

@@ -89,6 +89,12 @@ class Arrays(unittest.TestCase):
             again = tb.run(tb.Case.read(Path(directory) / "case.toml"))
             np.testing.assert_allclose(first.bound, again.bound, rtol=1e-9)
 
+    def test_a_mesh_stays_what_it_is(self) -> None:
+        points = SQUARE.copy()
+        mesh = tb.Mesh(points, QUADS)
+        points *= 2
+        np.testing.assert_array_equal(mesh.points, SQUARE)
+
     def test_wrong_arrays(self) -> None:
         for arguments, key, problem in (
             ((np.zeros((3, 4)), [[0, 1, 2]]), "points", "shape (3, 4)"),
@@ -97,6 +103,13 @@ class Arrays(unittest.TestCase):
             ((SQUARE, [[0, 1, 6]]), "cells", "number 6"),
             ((SQUARE, [[-1, 1, 2]]), "cells", "number -1"),
             ((SQUARE, [[0.0, 1.0, 3.0]]), "cells", "float64"),
+            ((SQUARE, [[0, 1, 2**40]]), "cells", "number 1099511627776"),
+            ((SQUARE + 1j, [[0, 1, 3]]), "points", "complex128"),
+            ((SQUARE.astype(str), [[0, 1, 3]]), "points", "<U"),
+            ((np.ma.masked_array(SQUARE, SQUARE > 1), [[0, 1, 3]]), "points", "masked"),
+            ((np.column_stack([SQUARE, SQUARE[:, 0]]), [[0, 1, 3]]), "cells", "(n, 2)"),
+            ((SQUARE, {"quad": QUADS, "line": [[0, 1]]}), "cells", "'line'"),
+            ((SQUARE, {"tetra": QUADS}), "cells", "'tetra'"),
             ((SQUARE, {"quad": [[0, 1, 4]]}), "cells", "quad in an array of shape (1, 3)"),
             ((SQUARE, {"pentagon": [[0, 1, 4]]}), "cells", "pentagon"),
         ):
@@ -107,6 +120,11 @@ class Arrays(unittest.TestCase):
         for regions in ({"a": [0]}, {"a": [0, 1], "b": [1]}, {"a": [0, 1, 2]}):
             with self.assertRaises(tb.InputError):
                 tb.Mesh(SQUARE, QUADS, regions=regions)
+        for name in ("", " ", 'a"b', "a\0b", "a\rb", 3, "a" * 300):
+            with self.assertRaisesRegex(tb.InputError, "has the name"):
+                tb.Mesh(SQUARE, QUADS, regions={name: [0, 1]}).points  # type: ignore[dict-item]
+        with self.assertRaisesRegex(TypeError, "a mesh is a tb.Mesh"):
+            tb.run(without_mesh(2, 1), "part.msh")  # type: ignore[arg-type]
         with self.assertRaisesRegex(tb.InputError, "inside the domain"):
             tb.run(without_mesh(2, 1), tb.Mesh(SQUARE, QUADS, boundaries={**SIDES, "inside": [[1, 4]]}))
 
@@ -170,6 +188,16 @@ class Meshio(unittest.TestCase):
             np.testing.assert_allclose(read.points, expected.points)
             self.assertEqual({name: len(f) for name, f in read.boundaries.items()},
                              {name: len(f) for name, f in expected.boundaries.items()})
+
+    def test_wrong_members_of_sets(self) -> None:
+        import meshio
+
+        for members in ([True, False], [2], [-1], [0.0]):
+            cells = [("quad", QUADS), ("line", np.array([[0, 1], [1, 2]]))]
+            mesh = meshio.Mesh(SQUARE, cells)
+            mesh.cell_sets = {"bottom": [None, np.array(members)]}
+            with self.assertRaisesRegex(tb.InputError, "bottom: has other members"):
+                tb.Mesh.from_meshio(mesh)
 
     def test_what_is_no_body(self) -> None:
         import meshio

@@ -121,6 +121,9 @@ class OwnParts(unittest.TestCase):
         for cells, error in (([10**6], IndexError), ([-1], IndexError), (["a"], TypeError), ([0.5], TypeError)):
             with self.assertRaises(error):
                 tb.run(block(2, 2), mark=lambda level: cells)
+        for too_many in (-1, 1):
+            with self.assertRaisesRegex(IndexError, "truth values for 64 cells"):
+                tb.run(block(2, 2), mark=lambda level: np.zeros(len(level.eta) + too_many, bool))
 
     def test_stopping_rule(self) -> None:
         result = tb.run(block(2, 2), stop=lambda level: level.number == 1 and "enough is seen")
