@@ -185,6 +185,8 @@ class Level:
         points = np.atleast_2d(np.asarray(x, dtype=float))
         if points.ndim != 2 or points.shape[1] != self.dimension:
             raise InputError.at("x", f"has the shape {points.shape}", f"(k, {self.dimension})", file="at")
+        if not np.isfinite(points).all():
+            raise InputError.at("x", "is not finite", "points of the body", file="at")
         found = self._core.probe(points.tolist())
         return Probe(x=points[found["point"]], **found)
 
@@ -206,9 +208,11 @@ class Level:
         with all others to rounding."""
         if boundary not in self.mesh.boundaries:
             raise KeyError(f"there is no boundary {boundary!r}: {', '.join(self.mesh.boundaries)}")
+        if "balance" not in self.record:
+            raise ValueError("the forces of this level are not known: in a marking or a stopping rule there are none yet")
         rows = [
             row
-            for row in (self.record.get("balance") or {}).get("rows", [])
+            for row in self.record["balance"]["rows"]
             if row["name"] == boundary and row["source"] != "body force"
         ]
         d = self.dimension

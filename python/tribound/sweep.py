@@ -43,6 +43,8 @@ def sweep(
     """
     if not values:
         raise InputError.at("values", "is empty", "keys with values")
+    if jobs < 1:
+        raise ValueError(f"jobs is {jobs}; right would be the number of processes at a time, 1 or more")
     base = case if isinstance(case, Case) else Case(case)
     place = Place(directory)
     keys = list(values)

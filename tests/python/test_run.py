@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import tribound as tb
 
-from small_cases import block
+from small_cases import block, solved
 
 
 class Run(unittest.TestCase):
@@ -176,6 +176,12 @@ class Levels(unittest.TestCase):
             level.at([9.0] * dimension)
         with self.assertRaisesRegex(tb.InputError, "shape"):
             level.at([1.0])
+
+    def test_what_is_not_known_is_an_error(self) -> None:
+        with self.assertRaisesRegex(ValueError, "not known"):
+            tb.run(block(2, 2), stop=lambda level: level.resultant("left").force[0] > 1)
+        with self.assertRaisesRegex(tb.InputError, "not finite"):
+            solved(2, 2).level.at([1, np.nan])
 
     def test_forces_balance(self) -> None:
         for dimension in (2, 3):
