@@ -83,13 +83,13 @@ std::unique_ptr<adapt::Levels<dim>> first_level(const case_file::Config& config,
 }
 
 /// One observer after the other; the second may be empty.
-adapt::StepObserver both(const Progress& first, const adapt::StepObserver& second)
+adapt::StepObserver both(const Progress& first, const adapt::StepObserver& second, const Ranks& ranks)
 {
   if (!second) return first;
-  return [first, second](const adapt::CertifiedStep& step)
+  return [first, second, ranks](const adapt::CertifiedStep& step)
   {
     first(step);
-    second(step);
+    ranks.together([&] { second(step); });
   };
 }
 
@@ -110,17 +110,16 @@ adapt::Strategy<dim> make_strategy(const case_file::Config& config, const std::a
   adapt::Strategy<dim> strategy = adapt::make_strategy<dim>(config.adapt, &stop);
   if (hooks.mark)
     strategy.mark = [&hooks, kept](const adapt::LevelView<dim>& view)
-    {
-      std::vector<Index> marked = view.discrete.mesh.ranks().together([&] { return hooks.mark(kept(view)); });
-      return marked;
-    };
+    { return view.discrete.mesh.ranks().together([&] { return hooks.mark(kept(view)); }); };
   if (hooks.stop)
     strategy.stop = [&hooks, kept, of_case = std::move(strategy.stop)](const adapt::LevelView<dim>& view)
     {
       std::string why = of_case(view);
       if (!why.empty()) return why;
-      why = view.discrete.mesh.ranks().together([&] { return hooks.stop(kept(view)); });
-      return why;
+      const Ranks& ranks = view.discrete.mesh.ranks();
+      why = ranks.together([&] { return hooks.stop(kept(view)); });
+      const bool stops = ranks.any(!why.empty());
+      return stops && why.empty() ? "the stopping rule of another process is met" : why;
     };
   return strategy;
 }
@@ -132,7 +131,7 @@ certify::Verdict go_through_levels(const case_file::Config& config, adapt::Level
                                    const RunHooks& hooks, RunReport<dim>& report)
 {
   adapt::Strategy<dim> strategy = make_strategy<dim>(config, stop, hooks);
-  strategy.observer.step = both(progress, hooks.step);
+  strategy.observer.step = both(progress, hooks.step, levels.discrete().mesh.ranks());
   strategy.observer.level = [&](const adapt::LevelView<dim>& view)
   {
     report.add(view);
@@ -191,7 +190,8 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
                                     restart->points);
   const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
   const adapt::Strategy<dim> strategy = make_strategy<dim>(config, stop, hooks);
-  const adapt::ReplayObserver<dim> observer = report.path_observer(both(progress, hooks.step));
+  const adapt::ReplayObserver<dim> observer =
+      report.path_observer(both(progress, hooks.step, path->grid().mesh.ranks()));
   const problem::Problem<dim>& problem = path->problem();
   const adapt::PathProgram& program = config.history->program;
   certify::Verdict verdict = config.history->refine == case_file::Refine::transfer

@@ -3,7 +3,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,18 +47,6 @@ std::string from_first(const std::string& text)
   return {characters.begin(), characters.end()};
 }
 
-/// The cells that a marking has returned, ascending.
-std::vector<Index> to_cells(const py::object& returned, Index n_cells)
-{
-  auto cells = py::cast<std::vector<Index>>(returned);
-  std::ranges::sort(cells);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  if (!cells.empty() && (cells.front() < 0 || cells.back() >= n_cells))
-    throw py::index_error("the marking returns a cell that the mesh does not have: there are " +
-                          std::to_string(n_cells));
-  return cells;
-}
-
 /// The hooks of an object with the functions `level` and `step`, and `mark` and `stop`, functions or None.
 template <int dim>
 app::LoopHooks<dim> loop_hooks(const py::object& hooks)
@@ -75,7 +62,7 @@ app::LoopHooks<dim> loop_hooks(const py::object& hooks)
     result.mark = [&hooks](const Kept& kept)
     {
       const py::gil_scoped_acquire lock;
-      return to_cells(hooks.attr("mark")(Level<dim>{kept}), kept->discrete->mesh.n_owned_cells());
+      return hooks.attr("mark")(Level<dim>{kept}).template cast<std::vector<Index>>();
     };
   if (!hooks.attr("stop").is_none())
     result.stop = [&hooks](const Kept& kept)

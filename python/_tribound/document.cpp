@@ -53,10 +53,13 @@ void take(const py::object& returned, const Where& where, std::span<double> valu
       fmt::format("one number per point, an array of shape ({},), or one number", values.size());
   const auto array = py::array::ensure(returned);
   if (!array || std::string_view("fiub").find(array.dtype().kind()) == std::string_view::npos)
-    throw InputError(where,
-                     fmt::format("the function returns {}, no numbers",
-                                 py::str(py::type::handle_of(returned).attr("__name__")).cast<std::string>()),
-                     hint);
+    throw InputError(
+        where,
+        fmt::format("the function returns {}, no numbers",
+                    array && array.ndim() > 0
+                        ? py::str(array.dtype()).cast<std::string>()
+                        : py::str(py::type::handle_of(returned).attr("__name__")).cast<std::string>()),
+        hint);
   const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(array);
   const bool is_one = numbers.ndim() == 0;
   if (!is_one && (numbers.ndim() != 1 || numbers.size() != static_cast<py::ssize_t>(values.size())))

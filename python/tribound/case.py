@@ -26,8 +26,8 @@ class Function:
     def __init__(self, f: Datum, degree: int | None = None) -> None:
         if not callable(f):
             raise TypeError(f"{f!r} is no function")
-        if degree is not None and index(degree) < 0:
-            raise ValueError(f"the degree of a polynomial is {degree}: 0 or more, None for other functions")
+        if degree is not None and not 0 <= index(degree) <= 1000:
+            raise ValueError(f"the degree of a polynomial is {degree}: 0 to 1000, None for other functions")
         self._f = f
         self.degree = degree
         self.uses_time = _takes_time(f)

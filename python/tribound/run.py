@@ -125,6 +125,10 @@ class Hooks:
                 cells = np.flatnonzero(cells)
             if cells.ndim != 1 or (cells.size and cells.dtype.kind not in "iu"):
                 raise TypeError("a marking returns the numbers of cells, or one truth value per cell")
+            cells = np.unique(cells)  # ascending
+            if cells.size and (cells[0] < 0 or cells[-1] >= len(level.eta)):
+                wrong = cells[0] if cells[0] < 0 else cells[-1]
+                raise IndexError(f"the marking returns cell {wrong}, but there are {len(level.eta)}, counted from 0")
             return cells.astype(np.int64)
 
         return marked

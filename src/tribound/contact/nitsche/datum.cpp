@@ -6,10 +6,15 @@ namespace tribound::contact
 {
 
 template <int dim, int n>
-Point<n> Datum<dim, n>::operator()(const Point<dim>& x) const
+std::vector<Point<n>> Datum<dim, n>::operator()(std::span<const Point<dim>> points) const
 {
-  Point<n> f = Point<n>::Zero();
-  for (const auto& [value, direction] : terms) f += (*value)(x)*direction;
+  std::vector<Point<n>> f(points.size(), Point<n>::Zero());
+  std::vector<double> values(points.size());
+  for (const auto& [value, direction] : terms)
+  {
+    value->template evaluate<dim>(points, values);
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] += values[i] * direction;
+  }
   return f;
 }
 

@@ -3,6 +3,7 @@
 /// @file datum.h
 /// A datum of the problem: a sum of fields, each in a direction.
 
+#include <span>
 #include <vector>
 
 #include "tribound/base/types.h"
@@ -22,7 +23,9 @@ struct Datum
   };
   std::vector<Term> terms;
 
-  [[nodiscard]] Point<n> operator()(const Point<dim>& x) const;
+  [[nodiscard]] Point<n> operator()(const Point<dim>& x) const { return (*this)(std::span(&x, 1)).front(); }
+  /// At all points; functions of a program are called once.
+  [[nodiscard]] std::vector<Point<n>> operator()(std::span<const Point<dim>> points) const;
   /// The largest degree of a term; not_polynomial if a term is not a polynomial.
   [[nodiscard]] int degree() const;
   /// Whether all terms are enclosed.

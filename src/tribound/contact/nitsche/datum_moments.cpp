@@ -275,8 +275,9 @@ DatumOnSimplex<k, n> DatumMoments<k, dim, n>::operator()(const Datum<dim, n>& da
 {
   DatumOnSimplex<k, n> result;
   Parts& parts = result.parts;
-  std::vector<Point<n>> on_whole;  // evaluated first: an undefined formula shows here
-  for (const Point<k>& s : rule_.points) on_whole.push_back(datum(map(s)));
+  std::vector<Point<dim>> points(rule_.points.size());
+  std::ranges::transform(rule_.points, points.begin(), map);
+  std::vector<Point<n>> on_whole = datum(points);  // evaluated first: an undefined formula shows here
   parts = cut_at_switches(datum, map, max_parts);
   for (auto& part : parts) enclose(datum, map, part);
   refine(datum, map, weights, allowed, max_parts, parts);
@@ -285,8 +286,11 @@ DatumOnSimplex<k, n> DatumMoments<k, dim, n>::operator()(const Datum<dim, n>& da
     parts.front().values = std::move(on_whole);
   else
     for (auto& part : parts)
-      for (const Point<k>& s : rule_.points)
-        part.values.push_back(datum(map(fem::point_in<k>(part.part, s))));
+    {
+      std::ranges::transform(rule_.points, points.begin(),
+                             [&](const Point<k>& s) { return map(fem::point_in<k>(part.part, s)); });
+      part.values = datum(points);
+    }
   Point<n> missed = Point<n>::Zero();
   for (const auto& part : parts) missed += 2 * measure_of(part, map) * part.mean_remainder;
   result.mean = missed.norm();
