@@ -1,6 +1,6 @@
-"""Elasticity in GetFEM on the mesh of a problem, with the elements of its demo_static_contact.py, and its export.
+"""Elasticity in GetFEM on the mesh of a problem, with the settings of its demo_static_contact.py, and its export.
 
-Displacements of degree 2, contact multipliers of degree 1, contact integrals by a composite rule, max_res 1e-9.
+Displacements of degree 2, contact multipliers of degree 1, contact integrals by a composite rule.
 Debian has the module for its own Python only.
 """
 
@@ -40,12 +40,14 @@ class Body:
         self.scalars = gf.MeshFem(self.mesh, 1)
         self.scalars.set_classical_fem(2)
         self.rule = gf.MeshIm(self.mesh, gf.Integ(VOLUME_RULE[self.dim]))
-        self.contact_rule = gf.MeshIm(self.mesh, gf.Integ(f"IM_STRUCTURED_COMPOSITE({VOLUME_RULE[self.dim]},4)"))
+        composite = f"IM_STRUCTURED_COMPOSITE({VOLUME_RULE[self.dim]},4)"
+        self.contact_rule = gf.MeshIm(self.mesh, gf.Integ(composite))
         self.lame = (youngs_modulus * nu / ((1 + nu) * (1 - 2 * nu)), youngs_modulus / (2 * (1 + nu)))
         model.add_fem_variable(self.variable, self.displacements)
         for constant, value in zip(("lam", "mu"), self.lame):
             model.add_initialized_data(f"{constant}_{body}", value)
-        model.add_isotropic_linearized_elasticity_brick(self.rule, self.variable, f"lam_{body}", f"mu_{body}")
+        constants = (f"lam_{body}", f"mu_{body}")
+        model.add_isotropic_linearized_elasticity_brick(self.rule, self.variable, *constants)
 
     def _add_boundary(self, name: str, number: int, corners: npt.NDArray[np.float64]) -> None:
         pids = [int(np.argmin(np.linalg.norm(self.mesh.pts().T - corner, axis=1))) for corner in corners]
@@ -78,7 +80,8 @@ class Body:
 
     def mean_displacement(self, boundary: str, direction: str) -> float:
         region = self.boundaries[boundary]
-        moved, length = (float(gf.asm_generic(self.rule, 0, term, region, self.model)) for term in (f"{self.variable}.{direction}", "1"))
+        moved, length = (float(gf.asm_generic(self.rule, 0, term, region, self.model))
+                         for term in (f"{self.variable}.{direction}", "1"))
         return moved / length
 
     def stress(self) -> str:
@@ -87,15 +90,15 @@ class Body:
         return f"({lam}*Trace(Grad_{u})*Id({self.dim})+{mu}*(Grad_{u}+Grad_{u}'))"
 
     def fields(self) -> tuple[npt.NDArray[np.float64], ...]:
-        """Of the nodes: position, displacement, stress xx yy zz xy yz xz. Where elements meet GetFEM takes the mean."""
+        """Of the nodes: position, displacement, stress xx yy zz xy yz xz, where elements meet the mean."""
         nodes = self.scalars.basic_dof_nodes().T
         displacement = self.model.variable(self.variable).reshape(-1, self.dim)
         tensor = self.stress()
         components = ["1,1", "2,2", "3,3", "1,2", "2,3", "1,3"] if self.dim == 3 else ["1,1", "2,2", "", "1,2"]
         along = f"{float(self.lame[0])!r}*Trace(Grad_{self.variable})"  # szz in plane strain
         stress = [self.model.interpolation(f"{tensor}({k})" if k else along, self.scalars) for k in components]
-        planar = ((0, 0), (0, 3 - self.dim))
-        return np.pad(nodes, planar), np.pad(displacement, planar), np.pad(np.column_stack(stress), ((0, 0), (0, 6 - len(stress))))
+        columns = ((nodes, 3), (displacement, 3), (np.column_stack(stress), 6))
+        return tuple(np.pad(column, ((0, 0), (0, width - column.shape[1]))) for column, width in columns)
 
     def cells(self) -> npt.NDArray[np.int64]:
         """The nodes of each cell, in the order of VTK; GetFEM counts them along x, then y, then z."""
@@ -115,7 +118,9 @@ def solve(model: gf.Model, scale: float = 1) -> None:
 def write(*bodies: Body) -> None:
     """getfem.vtu"""
     counts = np.cumsum([0, *(body.scalars.nbdof() for body in bodies)])
-    points, displacements, stresses = (np.concatenate(parts) for parts in zip(*(body.fields() for body in bodies)))
+    fields = zip(*(body.fields() for body in bodies))
+    points, displacements, stresses = (np.concatenate(parts) for parts in fields)
     cells = np.concatenate([body.cells() + first for body, first in zip(bodies, counts)])
     kind = SIMPLEX[bodies[0].dim] + ("6" if bodies[0].dim == 2 else "10")
-    meshio.Mesh(points, [(kind, cells)], {"displacement": displacements, "stress": stresses}).write("getfem.vtu")
+    values = {"displacement": displacements, "stress": stresses}
+    meshio.Mesh(points, [(kind, cells)], values).write("getfem.vtu")

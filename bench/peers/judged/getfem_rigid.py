@@ -9,11 +9,12 @@ UNSYMMETRIC_ALART_CURNIER = 1
 
 def add_obstacle(body: Body, boundary: str, distance: str, youngs_modulus: float) -> None:
     """The obstacle by its signed distance. r, the augmentation, is of the size of the stiffness, as in the demo."""
-    model = body.model
+    model, values = body.model, body.scalars.eval(distance, {"sqrt": np.sqrt})
     model.add_initialized_data("r", [youngs_modulus])
-    model.add_initialized_fem_data("obstacle", body.scalars, body.scalars.eval(distance, {"sqrt": np.sqrt}))
+    model.add_initialized_fem_data("obstacle", body.scalars, values)
     model.add_integral_contact_with_rigid_obstacle_brick(
-        body.contact_rule, body.variable, body.multiplier(boundary), "obstacle", "r", body.boundaries[boundary], UNSYMMETRIC_ALART_CURNIER)
+        body.contact_rule, body.variable, body.multiplier(boundary), "obstacle", "r", body.boundaries[boundary],
+        UNSYMMETRIC_ALART_CURNIER)
 
 
 def print_force(body: Body, boundary: str) -> None:

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """The block in GetFEM, where mesh.msh is; writes getfem.vtu.
 
-The friction of GetFEM's contact bricks ends where contact is open; that of Tresca's law does not. So the conditions
-are written as in GetFEM's tutorial "wheel in contact", an augmented Lagrangian, with the projections of Tresca's law.
+The friction of GetFEM's contact bricks ends where contact is open; that of Tresca's law does not. So the
+conditions are written as in GetFEM's tutorial "wheel in contact", an augmented Lagrangian, with the projections
+of Tresca's law.
 """
 
 import getfem as gf
@@ -20,8 +21,8 @@ model.add_initialized_data("gamma0", [1 / E])
 model.add_initialized_data("threshold", [0.03])
 model.add_macro("P", "(contact - u_block/(gamma0*element_size))")
 model.add_macro("T", "(Ball_projection(P - (P.Normal)*Normal, threshold) - neg_part(P.Normal)*Normal)")
-model.add_nonlinear_term(block.contact_rule, "-contact.Test_u_block - (gamma0*element_size)*(contact - T).Test_contact",
-                         block.boundaries["contact"])
+terms = "-contact.Test_u_block - (gamma0*element_size)*(contact - T).Test_contact"
+model.add_nonlinear_term(block.contact_rule, terms, block.boundaries["contact"])
 solve(model)
 write(block)
 print("RESULT lift", block.mean_displacement("right", "[0; 1]"))

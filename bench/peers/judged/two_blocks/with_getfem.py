@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The blocks in GetFEM, where mesh.msh is; writes getfem.vtu. Contact by its brick for meshes that do not match."""
+"""The blocks in GetFEM, where mesh.msh is; writes getfem.vtu."""
 
 import getfem as gf
 from getfem_model import Body, solve, write
