@@ -16,6 +16,8 @@ SIMPLEX = {2: "triangle", 3: "tetra"}
 FACET = {2: "line", 3: "triangle"}
 VOLUME_RULE = {2: "IM_TRIANGLE(4)", 3: "IM_TETRAHEDRON(5)"}
 
+gf.util_trace_level(0)
+
 
 class Body:
     """A body of mesh.msh: its mesh, the numbers of its boundaries, its displacement u_NAME in a model."""
@@ -109,7 +111,6 @@ class Body:
 
 def solve(model: gf.Model, scale: float = 1) -> None:
     """scale: of the residual; without loads GetFEM does not divide it by them."""
-    gf.util_trace_level(0)
     _, converged = model.solve("max_res", 1e-9 * scale, "max_iter", 50, "lsearch", "default")
     if not converged:
         sys.exit("Newton's method does not converge")
