@@ -130,6 +130,7 @@ class Carrier
   {
     const double size = std::max({(box_.upper - box_.lower).norm(), box_.upper.cwiseAbs().maxCoeff(),
                                   box_.lower.cwiseAbs().maxCoeff()});
+    straight_ = same_place.back() * size;
     for (const double part : same_place)
     {
       tolerance_ = part * size;
@@ -164,7 +165,7 @@ class Carrier
       if (!is_simplex(block.type)) result_.is_exact = false;
     }
     measure_curves();
-    if (result_.curved_distance > tolerance_) result_.is_exact = false;
+    if (result_.curved_distance > straight_) result_.is_exact = false;
     const fem::LagrangeSpace<dim> space(mesh_, result_.degree);
     start(space);
     for (Index c = 0; c < mesh_.n_cells(); ++c)
@@ -395,7 +396,7 @@ class Carrier
   void finish(const std::string& function)
   {
     result_.read_as = fmt::format("degree {}, {}", result_.degree, function);
-    if (result_.curved_distance > tolerance_)
+    if (result_.curved_distance > straight_)
       result_.read_as += fmt::format("; on straight cells, from which curved edges are up to {:.3g} away",
                                      result_.curved_distance);
   }
@@ -433,7 +434,8 @@ class Carrier
   Where where_;
   mesh::BoundingBox<dim> box_{};
   double tolerance_ = 0;
-  double scale_ = 0;  ///< the largest component of their displacement
+  double straight_ = 0;  ///< edges whose middles are no farther away count as straight
+  double scale_ = 0;     ///< the largest component of their displacement
   std::vector<Point<dim>> nodes_{};
   std::optional<PointGrid<dim>> grid_{};
   std::vector<Index> clusters_{};
