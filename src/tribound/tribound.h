@@ -43,7 +43,6 @@
 #include "tribound/mesh/import/imported_solution.h"
 #include "tribound/mesh/import/inp_assembler.h"
 #include "tribound/mesh/import/middle_rule.h"
-#include "tribound/mesh/import/middle_rule.h"
 #include "tribound/mesh/import/node_sets.h"
 #include "tribound/mesh/import/read.h"
 #include "tribound/mesh/mesh.h"
