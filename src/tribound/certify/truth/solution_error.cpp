@@ -100,6 +100,7 @@ std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh, const mesh::
 {
   if (!reference.partition()) return mesh::overlay(mesh, reference);
   std::vector<mesh::CellPair> pairs;
+  pairs.reserve(reference.n_owned_cells());
   for (Index c = 0; c < reference.n_owned_cells(); ++c)
     pairs.push_back({static_cast<Index>(reference.partition()->names[c].root), c});
   return pairs;
