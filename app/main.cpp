@@ -108,6 +108,8 @@ void describe_judge(CLI::App& command, Arguments& arguments)
                   "A file with their displacement at the nodes of the mesh of the case")
       ->required()
       ->type_name("FILE");
+  command.add_flag("--interpolate", request.interpolate,
+                   "Judge the interpolant of a solution on another mesh");
   command.add_option("--field", request.field, "The name of their displacement in the file")
       ->type_name("NAME");
   command.add_option("--stress", request.stress, "The name of their stress in the file")->type_name("NAME");

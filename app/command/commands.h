@@ -118,6 +118,7 @@ struct JudgeRequest : CaseRequest
   std::string stress{};                ///< its stress; empty: a usual name, if there is one
   std::optional<int> step{};           ///< of the file; absent: the last
   std::optional<int> load_step{};      ///< of the case; absent: the last
+  bool interpolate = false;            ///< on another mesh than that of the case: the interpolant is judged
   std::vector<std::string> numbers{};  ///< NAME=VALUE of quantities that they have computed
   std::optional<double> accept{};      ///< the largest relative error
 };

@@ -66,6 +66,9 @@ void import_deck(const ImportRequest& request)
   print(fmt::format("written: {}, {}\n\n", case_file.string(), mesh_file.string()));
   check({.case_file = case_file.string(), .overrides = {}, .quiet = false}, false);
   print(fmt::format("\nnext: tribound run {}\n", case_file.string()));
+  const std::filesystem::path results = std::filesystem::path(request.deck).replace_extension(".frd");
+  if (std::filesystem::exists(results))
+    print(fmt::format("or:   tribound judge {} --solution {}\n", case_file.string(), results.string()));
 }
 
 }  // namespace tribound::app

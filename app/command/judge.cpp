@@ -144,7 +144,8 @@ class Judge
         mesh::read_solution(request_.solution, {request_.field, request_.stress, request_.step});
     for (const std::string& text : solution.notes)
       if (!request_.quiet && is_first_process()) note(text);
-    theirs_ = certify::foreign_solution<dim>(solution, mesh_);
+    theirs_ = request_.interpolate ? certify::interpolated_solution<dim>(solution, mesh_)
+                                   : certify::foreign_solution<dim>(solution, mesh_);
     space_.emplace(mesh_, theirs_.degree);
     record_.solution = request_.solution;
     record_.description = solution.description;
@@ -185,6 +186,7 @@ class Judge
       for (std::size_t b = 0; b < forces.size(); ++b)
         record_.forces.push_back({mesh_.boundary_names()[b], {forces[b].begin(), forces[b].end()}});
     }
+    measure_tension(form);
     if (config.history) return;  // gaps and slips of a path are not theirs
     for (std::size_t k = 0; k < form.segments().size(); ++k)
       for (const contact::ContactState<dim>& state : form.contact_states(theirs_.u, k))
@@ -193,6 +195,18 @@ class Judge
         record_.penetration = std::max(0.0, -state.gap);
         record_.penetrated = problem_.boundary(form.segments()[k].slave.facet.tag).name;
       }
+  }
+
+  void measure_tension(const contact::NitscheForm<dim>& form)
+  {
+    if (theirs_.stress.empty()) return;
+    std::vector<std::size_t> facets;
+    for (const contact::ContactSegment<dim>& segment : form.segments())
+      if (const auto cone = problem::cone(segment.contact->law); !cone.is_bilateral && !cone.holds_tension)
+        facets.push_back(segment.slave.number);
+    if (facets.empty()) return;
+    std::ranges::sort(facets);
+    record_.tension = certify::tension<dim>(*space_, theirs_.stress, facets);
   }
 
   void take_intervals(const certify::EnergyBound& energy)

@@ -60,13 +60,14 @@ class NestedDisplacement
   {
     Place best;
     double inside = -std::numeric_limits<double>::infinity();
-    for (const mesh::CellPair& pair : std::ranges::equal_range(pairs_, cell, {}, &mesh::CellPair::a))
+    for (auto pair = std::ranges::lower_bound(pairs_, cell, {}, &mesh::CellPair::a);
+         pair != pairs_.end() && pair->a == cell; ++pair)
     {
-      const Point<dim> xhat = fem::reference_point(mesh::cell_map(space_.mesh(), pair.b), x);
+      const Point<dim> xhat = fem::reference_point(mesh::cell_map(space_.mesh(), pair->b), x);
       const double least = std::min(xhat.minCoeff(), 1 - xhat.sum());
       if (least <= inside) continue;
       inside = least;
-      best = {pair.b, xhat};
+      best = {pair->b, xhat};
     }
     return best;
   }

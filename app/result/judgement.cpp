@@ -203,6 +203,10 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
                                     ? fmt::format("up to {:.4g}{} on \"{}\"", *r.penetration,
                                                   r.facts.behind(problem::UnitOf::length), r.penetrated)
                                     : std::string("none at the points of contact"));
+  if (r.tension && r.tension->n_facets > 0)
+    text += line("tension", fmt::format("of their stress in contact up to {:.4g}{} on {}", r.tension->largest,
+                                        r.facts.behind(problem::UnitOf::stress),
+                                        count(static_cast<long>(r.tension->n_facets), "facet", "facets")));
   const std::string status = r.status();
   std::string why;
   if (status == "wide")
@@ -243,6 +247,8 @@ io::Json judgement_object(const JudgementRecord& r)
       {"forces", io::Json::array()},
       {"imbalance", io::number_or_null(r.imbalance)},
       {"penetration", io::number_or_null(r.penetration)},
+      {"tension", r.tension ? io::Json{{"largest", r.tension->largest}, {"facets", r.tension->n_facets}}
+                            : io::Json(nullptr)},
       {"penetrated", io::text_or_null(r.penetrated)},
       {"rigid_difference", io::Json::array()},
       {"factor", nullptr},

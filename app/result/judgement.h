@@ -51,8 +51,9 @@ struct JudgementRecord
   std::vector<JudgedForce> forces{};  ///< where their stress was read
   std::optional<double>
       imbalance{};  ///< of their forces and the loads inside, over the largest force of ours
-  std::optional<double> penetration{};  ///< the largest; absent: no contact
-  std::string penetrated{};             ///< the boundary
+  std::optional<double> penetration{};        ///< the largest; absent: no contact
+  std::optional<certify::Tension> tension{};  ///< where their stress was read and bodies may part
+  std::string penetrated{};                   ///< the boundary
   double sharpness = 0;
   long cells = 0;  ///< of the mesh that it was judged with
   std::optional<int> load_step{};

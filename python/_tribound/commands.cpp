@@ -131,6 +131,7 @@ int judge(const Document& document, const std::vector<std::string>& overrides, b
   what.solution = options["solution"].cast<std::string>();
   what.field = options["field"].cast<std::string>();
   what.stress = options["stress"].cast<std::string>();
+  what.interpolate = options["interpolate"].cast<bool>();
   what.step = options["step"].cast<std::optional<int>>();
   what.load_step = options["load_step"].cast<std::optional<int>>();
   what.numbers = options["numbers"].cast<std::vector<std::string>>();

@@ -65,6 +65,7 @@ def judge(
     *,
     field: str = "",
     stress: str = "",
+    interpolate: bool = False,
     step: int | None = None,
     load_step: int | None = None,
     numbers: Mapping[str, float] | None = None,
@@ -76,7 +77,8 @@ def judge(
     """Bounds the error of a solution on the mesh of the case from both sides, as `tribound judge`.
 
     solution: a file of docs/judge.md, or arrays: points (n, d), displacements (n, d) and perhaps stresses
-    (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. numbers: what was
+    (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. interpolate: a file on
+    another mesh is judged by its interpolant. numbers: what was
     computed for quantities of the case. accept: the largest relative error.
     """
     place = Place(directory)
@@ -86,6 +88,7 @@ def judge(
         "solution": str(file),
         "field": field,
         "stress": stress,
+        "interpolate": interpolate,
         "step": step,
         "load_step": load_step,
         "numbers": [f"{name}={float(value)!r}" for name, value in (numbers or {}).items()],

@@ -169,6 +169,7 @@ class Guarantee(unittest.TestCase):
         assert wide.stress and narrow.stress and narrow.relative
         self.assertLessEqual(wide.stress[0], narrow.stress[1])
         self.assertLessEqual(narrow.stress[0], wide.stress[1])
+        self.assertEqual(narrow["tension"]["facets"] > 0, narrow["tension"]["largest"] > 0)
         self.assertLess(narrow.stress[1], narrow.relative[1])  # averaged stresses are better than those of P1
 
     def test_regions_and_bodies(self) -> None:
@@ -191,7 +192,18 @@ class Guarantee(unittest.TestCase):
                 file = Path(directory) / "theirs.vtu"
                 theirs.to_meshio().write(file)
                 judged = tb.judge(case, file)
+                other = {**case, "mesh": {"boxes": {
+                    "lower": {"lower": [0, 0], "upper": [2, 1], "cells": [8, 4]},
+                    "upper": {"lower": [0, 1], "upper": [2, 2], "cells": [5, 4]},
+                }}}
+                with self.assertRaisesRegex(tb.InputError, "--interpolate"):
+                    tb.judge(other, file)
+                interpolated = tb.judge(other, file, interpolate=True)
             self.assertEqual(judged.status, "judged")
+            self.assertEqual(interpolated.status, "judged")
+            self.assertIn("interpolates", interpolated["read_as"])
+            assert interpolated.relative and judged.relative
+            self.assertLess(interpolated.relative[0], 2 * judged.relative[1])
             regions = judged["displacement"]["regions"]
             self.assertEqual([region["name"] for region in regions], ["lower", "upper"])
             squares = sum(region["distance"] ** 2 for region in regions)

@@ -23,6 +23,7 @@
 #include "tribound/fem/nested.h"
 #include "tribound/io/fields/tensor_field.h"
 #include "tribound/mesh/bisect.h"
+#include "tribound/mesh/box.h"
 #include "tribound/mesh/import/middle_rule.h"
 
 namespace tribound::test
@@ -312,6 +313,63 @@ TYPED_TEST(JudgementOf, OtherMeshesAreNamed)
               HasSubstr("has no displacement at node 4"));
   EXPECT_THAT(said([](auto& other) { other.mesh.cells[0].nodes.resize(dim + 1); }),
               HasSubstr("has no element with the corners of the cell"));
+}
+
+/// Functions of degree 2 on another mesh, which is larger: the interpolant is the function.
+TYPED_TEST(JudgementOf, OtherMeshesAreInterpolated)
+{
+  constexpr int dim = TypeParam::value;
+  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  mesh::MeshData<dim> data;
+  if constexpr (dim == 2)
+    data = mesh::box_mesh<2>({.lower = {-0.5, -0.5}, .upper = {3, 2}, .cells = {5, 4}});
+  else
+    data = box<3>({-0.5, -0.5, -0.5}, {2, 2, 2}, {3, 2, 3});
+  const mesh::Mesh<dim> other(std::move(data));
+  const certify::ForeignSolution<dim> found =
+      certify::interpolated_solution<dim>(exported<dim>(other, 2, 3), c.mesh);
+  EXPECT_EQ(found.degree, 2);
+  EXPECT_FALSE(found.is_exact);
+  const fem::LagrangeSpace<dim> space(c.mesh, 2);
+  EXPECT_LT(norm(sum(found.u, -1, values<dim>(space, quadratic<dim>))), 1e-12);
+  mesh::ImportedSolution elsewhere = exported<dim>(other, 2, 3);
+  for (Point<3>& x : elsewhere.mesh.nodes) x[0] += 10;
+  EXPECT_THAT(message_of([&] { return certify::interpolated_solution<dim>(elsewhere, c.mesh); }),
+              ::testing::HasSubstr("has no element at"));
+}
+
+/// Forces of a constant stress, and where it pulls.
+TYPED_TEST(JudgementOf, ForcesAndTensionOfAStress)
+{
+  constexpr int dim = TypeParam::value;
+  const mesh::Mesh<dim> mesh = []
+  {
+    if constexpr (dim == 2)
+      return mesh::Mesh<2>(block<2>({3, 2}));
+    else
+      return mesh::Mesh<3>(box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1}));
+  }();
+  const fem::LagrangeSpace<dim> space(mesh, 2);
+  Tensor<dim> sigma = Tensor<dim>::Zero();
+  sigma(0, 0) = 3;
+  sigma(1, 1) = -2;
+  const std::vector<Tensor<dim>> stress(static_cast<std::size_t>(mesh.n_cells()) * space.basis().n_nodes(),
+                                        sigma);
+  Point<dim> all = Point<dim>::Zero();
+  for (const Point<dim>& force : certify::boundary_forces<dim>(space, stress)) all += force;
+  EXPECT_LT(all.norm(), 1e-13);
+  std::vector<std::size_t> facets(mesh.boundary().size());
+  std::iota(facets.begin(), facets.end(), std::size_t{0});
+  const certify::Tension found = certify::tension<dim>(space, stress, facets);
+  EXPECT_NEAR(found.largest, 3, 1e-14);
+  const auto pulled = std::ranges::count_if(mesh.boundary(),
+                                            [&](const mesh::BoundaryFacet& facet)
+                                            {
+                                              const auto normal =
+                                                  mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
+                                              return std::abs(normal[0]) > 0.9;
+                                            });
+  EXPECT_EQ(found.n_facets, static_cast<std::size_t>(pulled));
 }
 
 /// Shape functions of order 2 are exact for polynomials of degree 2, those of order 1 for linear ones, and

@@ -12,11 +12,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "tribound/certify/truth/foreign_elements.h"
 #include "tribound/fem/degree.h"
 #include "tribound/fem/space.h"
 #include "tribound/mesh/box_tree.h"
 #include "tribound/mesh/geometry.h"
-#include "tribound/mesh/import/middle_rule.h"
+#include "tribound/mesh/import/simplices.h"
 
 namespace tribound::certify
 {
@@ -24,98 +25,11 @@ namespace tribound::certify
 namespace
 {
 
-/// Distances of nodes that are one, as parts of the size of the mesh. The second is for files with six
-/// digits.
-constexpr std::array same_place = {1e-6, 1e-5};
-
-/// Finds points by their coordinates: those in a cell of a grid and in its neighbours.
 template <int dim>
-class PointGrid
+class Carrier : private ForeignElements<dim>
 {
  public:
-  PointGrid(std::span<const Point<dim>> points, double tolerance) : points_(points), tolerance_(tolerance)
-  {
-    for (std::size_t i = 0; i < points.size(); ++i) cells_[key(points[i])].push_back(static_cast<Index>(i));
-  }
-
-  /// The points at most as far as the tolerance, ascending.
-  [[nodiscard]] std::vector<Index> near(const Point<dim>& x) const
-  {
-    std::vector<Index> found;
-    for_each_neighbour(key(x),
-                       [&](const Key& neighbour)
-                       {
-                         const auto cell = cells_.find(neighbour);
-                         if (cell == cells_.end()) return;
-                         for (const Index i : cell->second)
-                           if ((points_[i] - x).norm() <= tolerance_) found.push_back(i);
-                       });
-    std::ranges::sort(found);
-    return found;
-  }
-
- private:
-  using Key = std::array<std::int64_t, dim>;
-  struct Hash
-  {
-    std::size_t operator()(const Key& key) const
-    {
-      std::size_t hash = 0;
-      for (const std::int64_t k : key) hash = 1000003 * hash + static_cast<std::size_t>(k);
-      return hash;
-    }
-  };
-
-  [[nodiscard]] Key key(const Point<dim>& x) const
-  {
-    Key key;
-    for (int d = 0; d < dim; ++d) key[d] = static_cast<std::int64_t>(std::floor(x[d] / (4 * tolerance_)));
-    return key;
-  }
-
-  template <class Visit>
-  static void for_each_neighbour(const Key& centre, const Visit& visit)
-  {
-    constexpr int n = dim == 2 ? 9 : 27;
-    for (int i = 0; i < n; ++i)
-    {
-      Key key = centre;
-      for (int d = 0, rest = i; d < dim; ++d, rest /= 3) key[d] += rest % 3 - 1;
-      visit(key);
-    }
-  }
-
-  std::span<const Point<dim>> points_;
-  double tolerance_;
-  std::unordered_map<Key, std::vector<Index>, Hash> cells_;
-};
-
-/// A value as weights of nodes of the file, or of entries of the nodes of its elements.
-struct Term
-{
-  Index node;
-  std::size_t entry;
-  double weight;
-};
-using Terms = std::vector<Term>;
-
-template <int dim>
-Point<dim> in_plane(const Point<3>& x)
-{
-  return x.head<dim>();
-}
-
-template <int dim>
-class Carrier
-{
- public:
-  Carrier(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh)
-      : theirs_(theirs), mesh_(mesh), where_(theirs.mesh.source)
-  {
-    for (const Point<dim>& x : mesh.vertices()) box_.add(x);
-    for (const Point<3>& x : theirs.mesh.nodes) nodes_.push_back(in_plane<dim>(x));
-    choose_tolerance();
-  }
+  using ForeignElements<dim>::ForeignElements;
 
   ForeignSolution<dim> carry()
   {
@@ -124,53 +38,54 @@ class Carrier
     return std::move(result_);
   }
 
+  /// Their function at the nodes of the mesh, wherever their own are.
+  ForeignSolution<dim> interpolate()
+  {
+    if (theirs_.mesh.cells.empty())
+      throw InputError(where_, "has no elements: what is between its points is not known",
+                       "a format with elements, such as .vtu");
+    look_at_elements();
+    result_.is_exact = false;
+    const Pieces pieces = cut();
+    const fem::LagrangeSpace<dim> space(mesh_, result_.degree);
+    start(space);
+    for (Index c = 0; c < mesh_.n_cells(); ++c)
+      for (int i = 0; i < space.basis().n_nodes(); ++i)
+        set(space, c, i, terms_at(pieces, space.basis(), c, space.basis().node_point(i)));
+    finish("interpolates their function, which is on another mesh, at the nodes of this one");
+    return std::move(result_);
+  }
+
  private:
-  /// The smallest with which every vertex is found. Digits that are lost count by the largest coordinate.
-  void choose_tolerance()
-  {
-    const double size = std::max({(box_.upper - box_.lower).norm(), box_.upper.cwiseAbs().maxCoeff(),
-                                  box_.lower.cwiseAbs().maxCoeff()});
-    straight_ = same_place.back() * size;
-    for (const double part : same_place)
-    {
-      tolerance_ = part * size;
-      grid_.emplace(nodes_, tolerance_);
-      if (std::ranges::none_of(mesh_.vertices(), [&](const auto& x) { return grid_->near(x).empty(); }))
-        return;
-    }
-  }
-
-  [[nodiscard]] Index nearest(std::span<const Index> nodes, const Point<dim>& x) const
-  {
-    return *std::ranges::min_element(nodes, {}, [&](Index i) { return (nodes_[i] - x).norm(); });
-  }
-
-  [[noreturn]] void fail_digits(const Point<dim>& x) const
-  {
-    throw InputError(where_,
-                     fmt::format("does not tell two nodes at ({:.9g}) from each other", fmt::join(x, ", ")),
-                     "coordinates with more digits");
-  }
+  using Base = ForeignElements<dim>;
+  using Base::fail_digits;
+  using Base::fail_missing;
+  using Base::grid_;
+  using Base::look_at_elements;
+  using Base::mesh_;
+  using Base::nearest;
+  using Base::nodes_;
+  using Base::number_of;
+  using Base::other_mesh;
+  using Base::place_of;
+  using Base::result_;
+  using Base::straight_;
+  using Base::terms_of;
+  using Base::theirs_;
+  using Base::tolerance_;
+  using Base::where_;
+  using typename Base::Place;
 
   // ---- with elements
 
   void carry_elements()
   {
-    index_elements();
-    result_.degree = 1;
-    result_.is_exact = true;
-    for (const mesh::ElementBlock& block : theirs_.mesh.cells)
-    {
-      if (!is_linear_simplex(block.type)) result_.degree = 2;
-      if (!is_simplex(block.type)) result_.is_exact = false;
-    }
-    measure_curves();
-    if (result_.curved_distance > straight_) result_.is_exact = false;
+    look_at_elements();
     const fem::LagrangeSpace<dim> space(mesh_, result_.degree);
     start(space);
     for (Index c = 0; c < mesh_.n_cells(); ++c)
     {
-      const Place place = place_of(c);
+      const Place place = place_of(mesh::points_of(mesh_.vertices(), mesh_.cell(c)));
       for (int i = 0; i < space.basis().n_nodes(); ++i)
         set(space, c, i, terms_of(place, space.basis().node(i)));
     }
@@ -178,121 +93,79 @@ class Carrier
                             : "the piecewise quadratic function that takes their values at the nodes");
   }
 
-  [[nodiscard]] static bool is_simplex(const mesh::ElementType& type)
-  {
-    return type.shape == mesh::Shape::triangle || type.shape == mesh::Shape::tetrahedron;
-  }
-  [[nodiscard]] static bool is_linear_simplex(const mesh::ElementType& type)
-  {
-    return is_simplex(type) && !mesh::has_middles(type);
-  }
+  // ---- on another mesh
 
-  /// Nodes in one place are one cluster, named by the first of them.
-  void index_elements()
+  /// Their elements cut into simplices.
+  struct Pieces
   {
-    clusters_.resize(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) clusters_[i] = grid_->near(nodes_[i]).front();
-    std::size_t entry = 0;
-    for (std::size_t b = 0; b < theirs_.mesh.cells.size(); ++b)
-    {
-      const mesh::ElementBlock& block = theirs_.mesh.cells[b];
-      const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
-      if (table.dim != dim)
-        throw InputError(where_, fmt::format("is in {}D, the mesh in {}D", table.dim, dim),
-                         "the solution on the mesh of the case");
-      for (std::size_t e = 0; e < block.size(); ++e, entry += block.type.n_nodes)
-        for (int corner = 0; corner < table.n_corners; ++corner)
-        {
-          const auto nodes = block.element(e);
-          std::vector<Element>& elements = elements_of_[clusters_[nodes[corner]]];
-          if (elements.empty() || elements.back().block != b || elements.back().number != e)
-            elements.push_back({b, e, entry});
-          else if (std::ranges::count(nodes.first(table.n_corners), nodes[corner]) <
-                   2)  // a prism as hexahedron has
-            fail_digits(nodes_[nodes[corner]]);
-        }
-    }
-  }
-
-  void measure_curves()
-  {
-    for (const mesh::ElementBlock& block : theirs_.mesh.cells)
-    {
-      const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
-      if (!mesh::has_middles(block.type)) continue;
-      for (std::size_t e = 0; e < block.size(); ++e)
-        for (int k = 0; k < table.n_edges; ++k)
-        {
-          const auto nodes = block.element(e);
-          const Point<dim> middle = (nodes_[nodes[table.edges[k][0]]] + nodes_[nodes[table.edges[k][1]]]) / 2;
-          result_.curved_distance =
-              std::max(result_.curved_distance, (nodes_[nodes[table.n_corners + k]] - middle).norm());
-        }
-    }
-  }
-
-  struct Element
-  {
-    std::size_t block;
-    std::size_t number;
-    std::size_t entry;  ///< of its first node among those of all elements
-  };
-  /// Where a cell lies: in an element, with its vertices at these corners.
-  struct Place
-  {
-    Element element;
-    std::array<int, dim + 1> corners;
+    std::vector<std::array<Point<dim>, dim + 1>> corners;
+    std::vector<Place> places;
+    std::optional<mesh::BoxTree<dim>> tree;
   };
 
-  Place place_of(Index cell)
+  /// x = x_0 + J xhat in a simplex with these corners.
+  static Point<dim> coordinates(const std::array<Point<dim>, dim + 1>& corners, const Point<dim>& x)
   {
-    std::array<Index, dim + 1> clusters;
-    for (int v = 0; v <= dim; ++v) clusters[v] = cluster_at(mesh_.cell(cell)[v]);
-    for (const Element& element : elements_of_[clusters[0]])
+    Tensor<dim> jacobian;
+    for (int j = 0; j < dim; ++j) jacobian.col(j) = corners[j + 1] - corners[0];
+    const Tensor<dim> cofactor = mesh::cofactor<dim>(jacobian);
+    return cofactor.transpose() * (x - corners[0]) / jacobian.col(0).dot(cofactor.col(0));
+  }
+
+  Pieces cut()
+  {
+    mesh::ImportedMesh bare{.source = theirs_.mesh.source,
+                            .nodes = theirs_.mesh.nodes,
+                            .node_numbers = theirs_.mesh.node_numbers,
+                            .cells = theirs_.mesh.cells};
+    const mesh::SimplicialMesh simplicial = mesh::make_simplicial(std::move(bare));
+    const auto& data = std::get<mesh::MeshData<dim>>(simplicial.data);
+    Pieces pieces;
+    std::vector<mesh::BoundingBox<dim>> boxes;
+    boxes.reserve(data.cells.size());
+    for (const mesh::Cell<dim>& cell : data.cells)
     {
-      const mesh::ElementBlock& block = theirs_.mesh.cells[element.block];
-      const int n_corners = mesh::table_of(block.type.shape).n_corners;
-      Place place{element, {}};
-      bool has_all = true;
-      for (int v = 0; v <= dim && has_all; ++v)
-      {
-        int corner = 0;
-        while (corner < n_corners && clusters_[block.element(element.number)[corner]] != clusters[v])
-          ++corner;
-        has_all = corner < n_corners;
-        place.corners[v] = corner;
-      }
-      if (has_all) return place;
+      pieces.corners.push_back(mesh::points_of<dim>(data.vertices, cell));
+      pieces.places.push_back(place_of(pieces.corners.back()));
+      boxes.push_back(mesh::bounding_box<dim>(pieces.corners.back()));
     }
-    Point<dim> centre = Point<dim>::Zero();
-    for (const Index v : mesh_.cell(cell)) centre += mesh_.vertex(v) / (dim + 1);
-    throw InputError(
-        where_,
-        fmt::format("has no element with the corners of the cell at ({:.6g})", fmt::join(centre, ", ")),
-        "the solution on the mesh of the case; on another one it is not judged");
+    pieces.tree.emplace(boxes);
+    return pieces;
   }
 
-  Index cluster_at(Index vertex)
+  /// At a point of a cell, given in its reference coordinates. Where bodies touch, the side of the cell
+  /// counts: it is looked for a little inside.
+  Terms terms_at(const Pieces& pieces, const fem::LagrangeBasis<dim>& basis, Index cell,
+                 const Point<dim>& xhat)
   {
-    const Point<dim>& x = mesh_.vertex(vertex);
-    const std::vector<Index> found = grid_->near(x);
-    if (found.empty()) fail_missing(x);
-    const Index node = nearest(found, x);
-    result_.node_distance = std::max(result_.node_distance, (nodes_[node] - x).norm());
-    return clusters_[node];
-  }
-
-  [[nodiscard]] Terms terms_of(const Place& place, const std::array<int, dim + 1>& node) const
-  {
-    const mesh::ElementBlock& block = theirs_.mesh.cells[place.element.block];
-    std::vector<int> ends;
-    for (int v = 0; v <= dim; ++v)
-      if (node[v] > 0) ends.push_back(place.corners[v]);
-    const auto rule = ends.size() == 1 ? std::vector<std::pair<int, double>>{{ends[0], 1.0}}
-                                       : mesh::middle_rule(block.type, ends[0], ends[1]);
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh_, cell);
+    const Point<dim> inside = map(xhat + same_place.back() * (Point<dim>::Constant(1.0 / (dim + 1)) - xhat));
+    mesh::BoundingBox<dim> box;
+    box.add(inside - Point<dim>::Constant(tolerance_));
+    box.add(inside + Point<dim>::Constant(tolerance_));
+    Index best = -1;
+    double largest = -std::numeric_limits<double>::infinity();  // of the smallest barycentric coordinate
+    pieces.tree->traverse([&](const mesh::BoundingBox<dim>& other) { return mesh::meet(box, other); },
+                          [&](std::size_t k)
+                          {
+                            const Point<dim> y = coordinates(pieces.corners[k], inside);
+                            const double smallest = std::min(y.minCoeff(), 1 - y.sum());
+                            if (smallest <= largest) return;
+                            largest = smallest;
+                            best = static_cast<Index>(k);
+                          });
+    if (best < 0 || largest < -1e-3)
+      throw InputError(where_, fmt::format("has no element at ({:.6g})", fmt::join(inside, ", ")),
+                       "a mesh that covers that of the case");
+    const Point<dim> y = coordinates(pieces.corners[best], map(xhat));
+    const fem::Tabulation<dim> table = basis.tabulate({&y, 1});
     Terms terms;
-    for (const auto& [slot, weight] : rule)
-      terms.push_back({block.element(place.element.number)[slot], place.element.entry + slot, weight});
+    for (int j = 0; j < table.n_nodes; ++j)
+      for (Term term : terms_of(pieces.places[best], basis.node(j)))
+      {
+        term.weight *= table.values[j];
+        terms.push_back(term);
+      }
     return terms;
   }
 
@@ -401,46 +274,13 @@ class Carrier
                                      result_.curved_distance);
   }
 
-  [[nodiscard]] std::int64_t number_of(Index node) const
-  {
-    const auto& numbers = theirs_.mesh.node_numbers;
-    return static_cast<std::size_t>(node) < numbers.size() ? numbers[node] : node + 1;
-  }
-
   [[noreturn]] void fail_value(const Terms& terms, std::string_view what) const
   {
     throw InputError(where_, fmt::format("has no {} at node {}", what, number_of(terms.front().node)),
                      "a number for every node");
   }
 
-  /// Tells meshes of another size or at another place from others.
-  [[noreturn]] void fail_missing(const Point<dim>& x) const
-  {
-    mesh::BoundingBox<dim> box;
-    for (const Point<dim>& node : nodes_) box.add(node);
-    const double size = (box.upper - box.lower).norm() / (box_.upper - box_.lower).norm();
-    const Point<dim> shift = (box.upper + box.lower - box_.upper - box_.lower) / 2;
-    std::string hint = "the solution on the mesh of the case; on another one it is not judged";
-    if (std::abs(size - 1) > 1e-3)
-      hint = fmt::format("their mesh is {:.4g} times as large: other units?", size);
-    else if (shift.norm() > tolerance_)
-      hint = fmt::format("their mesh is shifted by ({:.4g})", fmt::join(shift, ", "));
-    throw InputError(where_, fmt::format("has no node at ({:.9g}), a vertex of the mesh", fmt::join(x, ", ")),
-                     hint);
-  }
-
-  const mesh::ImportedSolution& theirs_;
-  const mesh::Mesh<dim>& mesh_;
-  Where where_;
-  mesh::BoundingBox<dim> box_{};
-  double tolerance_ = 0;
-  double straight_ = 0;  ///< edges whose middles are no farther away count as straight
-  double scale_ = 0;     ///< the largest component of their displacement
-  std::vector<Point<dim>> nodes_{};
-  std::optional<PointGrid<dim>> grid_{};
-  std::vector<Index> clusters_{};
-  std::unordered_map<Index, std::vector<Element>> elements_of_{};
-  ForeignSolution<dim> result_{};
+  double scale_ = 0;  ///< the largest component of their displacement
 };
 
 }  // namespace
@@ -451,7 +291,15 @@ ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs, cons
   return Carrier<dim>(theirs, mesh).carry();
 }
 
+template <int dim>
+ForeignSolution<dim> interpolated_solution(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh)
+{
+  return Carrier<dim>(theirs, mesh).interpolate();
+}
+
 template ForeignSolution<2> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&);
 template ForeignSolution<3> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&);
+template ForeignSolution<2> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&);
+template ForeignSolution<3> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&);
 
 }  // namespace tribound::certify

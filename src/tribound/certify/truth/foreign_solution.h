@@ -38,4 +38,10 @@ template <int dim>
 [[nodiscard]] ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs,
                                                     const mesh::Mesh<dim>& mesh);
 
+/// The function on the mesh that takes, at the nodes of the degree of theirs, the values of their function on
+/// another mesh, which covers this one. Throws InputError where it does not, and for points without elements.
+template <int dim>
+[[nodiscard]] ForeignSolution<dim> interpolated_solution(const mesh::ImportedSolution& theirs,
+                                                         const mesh::Mesh<dim>& mesh);
+
 }  // namespace tribound::certify

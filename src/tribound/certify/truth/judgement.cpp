@@ -44,7 +44,7 @@ std::vector<Index> largest(std::span<const double> cells, double part)
 template <int dim>
 double volume_of(const mesh::Mesh<dim>& mesh, Index cell)
 {
-  return mesh::cell_map(mesh, cell).det / (dim == 2 ? 2 : 6);
+  return mesh::cell_map(mesh, cell).measure();
 }
 
 template <int dim>
@@ -239,30 +239,67 @@ Judgement judge(const problem::Problem<dim>& problem, const fem::LagrangeSpace<d
   return judgement;
 }
 
-template <int dim>
-std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
-                                        std::span<const Tensor<dim>> stress)
+/// Calls use(facet, weight, s n, n) at the points of a rule on the facets of boundaries.
+template <int dim, class Use>
+void for_each_traction(const fem::LagrangeSpace<dim>& their_space, std::span<const Tensor<dim>> stress,
+                       const Use& use)
 {
   const mesh::Mesh<dim>& mesh = their_space.mesh();
   const auto n_nodes = static_cast<std::size_t>(their_space.basis().n_nodes());
   const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(their_space.degree());
   const fem::FacetTabulation<dim> tables = fem::tabulate_on_facets<dim>(their_space.basis(), rule.points);
-  std::vector<Point<dim>> forces(mesh.boundary_names().size(), Point<dim>::Zero());
-  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  for (std::size_t f = 0; f < mesh.boundary().size(); ++f)
   {
-    if (facet.tag < 0) continue;
+    const mesh::BoundaryFacet& facet = mesh.boundary()[f];
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const fem::Tabulation<dim>& table = tables.on_facet[facet.local];
     for (int q = 0; q < rule.size(); ++q)
-      for (std::size_t i = 0; i < n_nodes; ++i)
-        forces[facet.tag] += rule.weights[q] * geometry.det() * table.values_at(q)[i] *
-                             stress[n_nodes * facet.cell + i] * geometry.normal;
+    {
+      Tensor<dim> s = Tensor<dim>::Zero();
+      for (std::size_t i = 0; i < n_nodes; ++i) s += table.values_at(q)[i] * stress[n_nodes * facet.cell + i];
+      use(f, rule.weights[q] * geometry.det(), Point<dim>(s * geometry.normal), geometry.normal);
+    }
   }
+}
+
+template <int dim>
+std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
+                                        std::span<const Tensor<dim>> stress)
+{
+  const mesh::Mesh<dim>& mesh = their_space.mesh();
+  std::vector<Point<dim>> forces(mesh.boundary_names().size(), Point<dim>::Zero());
+  for_each_traction<dim>(their_space, stress,
+                         [&](std::size_t f, double weight, const Point<dim>& traction, const Point<dim>&)
+                         {
+                           if (mesh.boundary()[f].tag >= 0)
+                             forces[mesh.boundary()[f].tag] += weight * traction;
+                         });
   return forces;
+}
+
+template <int dim>
+Tension tension(const fem::LagrangeSpace<dim>& their_space, std::span<const Tensor<dim>> stress,
+                std::span<const std::size_t> facets)
+{
+  Tension result;
+  std::optional<std::size_t> last;
+  for_each_traction<dim>(their_space, stress,
+                         [&](std::size_t f, double, const Point<dim>& traction, const Point<dim>& normal)
+                         {
+                           if (!std::ranges::binary_search(facets, f) || traction.dot(normal) <= 0) return;
+                           result.largest = std::max(result.largest, traction.dot(normal));
+                           if (last != f) ++result.n_facets;
+                           last = f;
+                         });
+  return result;
 }
 
 template std::vector<Point<2>> boundary_forces(const fem::LagrangeSpace<2>&, std::span<const Tensor<2>>);
 template std::vector<Point<3>> boundary_forces(const fem::LagrangeSpace<3>&, std::span<const Tensor<3>>);
+template Tension tension(const fem::LagrangeSpace<2>&, std::span<const Tensor<2>>,
+                         std::span<const std::size_t>);
+template Tension tension(const fem::LagrangeSpace<3>&, std::span<const Tensor<3>>,
+                         std::span<const std::size_t>);
 template Judgement judge(const problem::Problem<2>&, const fem::LagrangeSpace<2>&, const ForeignSolution<2>&,
                          const fem::LagrangeSpace<2>&, std::span<const double>, double);
 template Judgement judge(const problem::Problem<3>&, const fem::LagrangeSpace<3>&, const ForeignSolution<3>&,
