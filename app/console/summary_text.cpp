@@ -65,7 +65,7 @@ std::string component_lines(const certify::BoundComponents& components, const ce
 
 constexpr std::array axes = {"x", "y", "z"};
 
-double largest(std::span<const double> values, double start)
+double largest_with(std::span<const double> values, double start)
 {
   for (const double value : values) start = std::max(start, std::abs(value));
   return start;
@@ -165,8 +165,8 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
   for (const certify::BalanceRow& row : balance.rows)
   {
     width = std::max(width, label(row).size());
-    force = largest(row.force, force);
-    moment = largest(row.moment, moment);
+    force = largest_with(row.force, force);
+    moment = largest_with(row.moment, moment);
   }
   std::string head;
   for (std::size_t i = 0; i < dim; ++i) head += fmt::format("{:>13}", fmt::format("force {}", axes[i]));
