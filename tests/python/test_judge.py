@@ -211,6 +211,91 @@ class Guarantee(unittest.TestCase):
             self.assertEqual(len(judged["rigid_difference"]), 2)
 
 
+def write_frd(file: Path, points: Floats, hexahedra: NDArray[np.int64], displacement: Floats, stress: Floats) -> None:
+    """As PrePoMax has it from CalculiX: two steps, of which the first has half of the displacement."""
+
+    def rows(values: Floats) -> str:
+        return "".join(f" -1{i:10d}" + "".join(f"{x:12.5E}" for x in row) + "\n" for i, row in enumerate(values, 1)) + " -3\n"
+
+    text = "    1C\n    1UPGM               CalculiX\n" + f"    2C{len(points):30d}{1:38d}\n" + rows(points)
+    text += f"    3C{len(hexahedra):30d}{1:38d}\n"
+    for number, element in enumerate(hexahedra, 1):
+        text += f" -1{number:10d}{1:5d}{0:5d}{1:5d}\n -2" + "".join(f"{node + 1:10d}" for node in element) + "\n"
+    text += " -3\n"
+    for step, factor in ((1, 0.5), (2, 1.0)):
+        for name, components, values in (
+            ("DISP", ["D1", "D2", "D3", "ALL"], displacement),
+            ("STRESS", ["SXX", "SYY", "SZZ", "SXY", "SYZ", "SZX"], stress),
+        ):
+            text += f"    1PSTEP{2 * step:26d}{1:12d}{step:12d}\n"
+            text += f"  100CL  10{step}{float(step):12.9f}{len(points):12d}{0:22d}{step:5d}{1:12d}\n"
+            text += f" -4  {name:8s}{len(components):5d}    1\n"
+            text += "".join(f" -5  {c:8s}    1    2    1{0:5d}{int(c == 'ALL'):5d}\n" for c in components)
+            text += rows(factor * values)
+    file.write_text(text + " 9999\n")
+
+
+class Strangers(unittest.TestCase):
+    """Files as other programs write them, judged at the first try."""
+
+    def test_prepomax(self) -> None:
+        from test_mesh import hexahedra
+
+        points, cells, sides = hexahedra((4, 2, 2))
+        mesh = tb.Mesh(points, cells, boundaries=sides)
+        case = block(3, 2, adapt={"max_dofs": 20000}, judge={"sharpness": 0.5})
+        del case["mesh"]
+        for free in ("back", "front"):
+            case["boundary"][free] = {"traction": [0, 0, 0]}
+        level = tb.run(case, mesh, set={"adapt.max_levels": 0, "degree": 1}).level
+        number = {tuple(np.round(x, 9)): i for i, x in enumerate(level.nodes)}
+        order = [number[tuple(np.round(x, 9))] for x in points]
+        stress, count = np.zeros((len(level.nodes), 6)), np.zeros(len(level.nodes))
+        np.add.at(stress, level.cell_nodes, level.stress)
+        np.add.at(count, level.cell_nodes, 1)
+        with tempfile.TemporaryDirectory() as directory:
+            file = Path(directory) / "analysis.frd"
+            write_frd(file, points, cells, level.displacement[order], (stress / count[:, None])[order])
+            judged = tb.judge(case, file, mesh)
+            first = tb.judge(case, file, mesh, step=1)
+        self.assertIn(judged.status, ("judged", "wide"))
+        self.assertIn("CalculiX", judged["solution"]["description"])
+        self.assertIn("quadratic", judged["read_as"])  # hexahedra
+        assert judged.relative and judged.stress and first.relative
+        self.assertGreater(first.relative[0], judged.relative[0])
+
+    @unittest.skipUnless(importlib.util.find_spec("meshio"), "meshio is not installed")
+    def test_fenicsx(self) -> None:
+        """Vectors of three components and tensors of nine, also in the plane."""
+        import meshio
+
+        case = block(2, 2, adapt={"max_dofs": 20000})
+        level = tb.run(case, set={"adapt.max_levels": 0, "degree": 1}).level
+        space = np.column_stack([level.nodes, np.zeros(len(level.nodes))])
+        u = np.column_stack([level.displacement, np.zeros(len(level.nodes))])
+        sigma = np.zeros((len(space), 3, 3))
+        count = np.zeros(len(space))
+        tensor = level.stress[:, :, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(*level.cell_nodes.shape, 3, 3)
+        np.add.at(sigma, level.cell_nodes, tensor)
+        np.add.at(count, level.cell_nodes, 1)
+        sigma /= count[:, None, None]
+        shuffled = np.random.default_rng(3).permutation(len(space))
+        back = np.argsort(shuffled)
+        with tempfile.TemporaryDirectory() as directory:
+            file = Path(directory) / "u.vtu"
+            meshio.Mesh(
+                space[shuffled],
+                [("triangle", back[level.cell_nodes])],
+                point_data={"u": u[shuffled], "stress": sigma[shuffled].reshape(-1, 9)},
+            ).write(file)
+            judged = tb.judge(case, file)
+        table = tb.judge(case, (level.nodes, level.displacement, np.stack([sigma[:, 0, 0], sigma[:, 1, 1], sigma[:, 0, 1]], axis=1)))
+        self.assertEqual(judged.status, "judged")
+        assert judged.relative and judged.stress and table.relative and table.stress
+        np.testing.assert_allclose(judged.relative, table.relative, rtol=1e-9)
+        np.testing.assert_allclose(judged.stress, table.stress, rtol=1e-9)
+
+
 class Use(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
