@@ -41,6 +41,8 @@ install(FILES ${PROJECT_BINARY_DIR}/tribound-config.cmake ${PROJECT_BINARY_DIR}/
 install(FILES CHANGELOG.md CITATION.cff CONTRIBUTING.md COPYING LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES src/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src)
 install(FILES bench/README.md bench/block3d.toml DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/peers/judged DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench/peers PATTERN "mesh.msh" EXCLUDE
+                                                                                              PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.ipynb" PATTERN "*.png"
                                                                                           PATTERN "*.svg" PATTERN "*.bib")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN "out" EXCLUDE

@@ -97,8 +97,8 @@ PageLevel page_level(int number, const contact::NitscheForm<dim>& form,
                      const adapt::CertifiedLevel<dim>& level, const PageLimits& limits)
 {
   const Surface surface = sample_surface(form, level.u, level.stress, limits);
-  PageLevel result{number, surface.n_triangles(), surface_json(form, surface)};
-  result.json["level"] = number;
+  PageLevel result{number, surface.n_triangles(), {{"level", number}}};
+  result.json.update(surface_json(form, surface));
   result.json["eta"] = eta_json(surface, level.estimate);
   result.json.update(page_contact(form, level.u, surface, limits));
   return result;
