@@ -98,8 +98,9 @@ class Judge
     if (energy) take_intervals(*energy);
     if (!record_.reason.empty()) return;
     record_.target = io::words_of(energy->target);
-    record_.judgement =
-        certify::judge<dim>(problem_, *space_, theirs_, level.discrete->space, level.level.u, energy->bound);
+    // The problem of the level has the initial stress of its load step.
+    record_.judgement = certify::judge<dim>(level.discrete->form.problem(), *space_, theirs_,
+                                            level.discrete->space, level.level.u, energy->bound);
   }
 
   [[nodiscard]] JudgementRecord& record() { return record_; }

@@ -332,6 +332,28 @@ class Use(unittest.TestCase):
         with self.assertRaisesRegex(tb.InputError, "1000 times as large"):
             tb.judge(self.case, (1000 * points, displacement))
 
+    def test_load_steps(self) -> None:
+        """With a temperature that varies with t: the stress of ours is that of the step."""
+        case = block(2, 2, history={"steps": [0.5, 1.0]}, load={"temperature": "20*t"}, adapt={"tolerance": 0.02})
+        case["material"] = {"E": 1.0, "nu": 0.3, "alpha": 1e-3}
+        case["boundary"]["bottom"]["contact"] = {"friction": "tresca", "threshold": 0.03, "gap": 0}
+        case["boundary"]["top"] = {"traction": [0, "-0.1*t"]}
+        finest = tb.run(case, keep_levels=True, set={"adapt.tolerance": 0.005})
+        relative = []
+        for number in (1, 2):
+            theirs = tb.run(case, keep_levels=True, set={"degree": 3, "adapt.max_levels": 0}).levels[number - 1]
+            x = np.unique(theirs.nodes, axis=0)
+            probe = finest.levels[number - 1].at(x)
+            order = [int(np.argmin(((theirs.nodes - point) ** 2).sum(axis=1))) for point in x]
+            judged = tb.judge(case, (x, theirs.displacement[order], probe.stress), load_step=number)
+            self.assertEqual(judged["load_step"], number)
+            self.assertNotEqual(judged.status, "no bound", judged["reason"])
+            assert judged.relative and judged["stress"]
+            relative.append(judged.relative[1])
+            size = judged["energy_norm"]
+            self.assertLess(judged["stress"]["distance"], 0.2 * size)
+        self.assertLess(max(relative), 0.5)
+
     def test_wrong_arrays(self) -> None:
         points, displacement = self.solution
         for arrays in ((points, displacement[:-1]), (points, displacement, displacement), (points[:, :1], displacement)):
