@@ -14,7 +14,7 @@
 #include <string>
 
 #include "support/dimensions.h"
-#include "support/discrete_problem.h"
+#include "support/distorted_box.h"
 #include "support/fields.h"
 #include "support/input_error.h"
 #include "support/meshes.h"
@@ -40,17 +40,6 @@ class JudgementOf : public ::testing::Test
 {
 };
 TYPED_TEST_SUITE(JudgementOf, Dimensions);
-
-template <int dim>
-DiscreteProblem<dim> box_of_degree(int degree)
-{
-  mesh::MeshData<dim> data;
-  if constexpr (dim == 2)
-    data = block<2>({3, 2});
-  else
-    data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1});
-  return {distorted(std::move(data), 4), {.material = lame(1.3, 0.3)}, {.degree = degree}};
-}
 
 template <int dim>
 Point<3> in_space(const Point<dim>& x)
@@ -121,7 +110,7 @@ std::vector<double> values(const fem::LagrangeSpace<dim>& space, Point<dim> (*f)
 TYPED_TEST(JudgementOf, SimplicesGiveTheirFunction)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   for (const int degree : {1, 2})
   {
     const certify::ForeignSolution<dim> found =
@@ -137,7 +126,7 @@ TYPED_TEST(JudgementOf, SimplicesGiveTheirFunction)
 TYPED_TEST(JudgementOf, NodesOfSixDigitsAreFound)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   for (const bool has_elements : {true, false})
   {
     mesh::ImportedSolution theirs = exported<dim>(c.mesh, 2, 7);
@@ -154,7 +143,7 @@ TYPED_TEST(JudgementOf, NodesOfSixDigitsAreFound)
 TYPED_TEST(JudgementOf, PointsGiveTheDegreeOfTheirNumber)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   for (int degree = 1; degree <= 4; ++degree)
   {
     const fem::LagrangeSpace<dim> space(c.mesh, degree);
@@ -173,7 +162,7 @@ TYPED_TEST(JudgementOf, PointsGiveTheDegreeOfTheirNumber)
 TYPED_TEST(JudgementOf, OurOwnSolutionHasTheDistanceZero)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(2);
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const std::vector<double> u = random_free_vector({std::vector<char>(c.space.n_dofs(), 0), {}}, 1.0, 3);
   certify::ForeignSolution<dim> theirs{.degree = 2, .u = u};
   const io::TensorField<dim> sigma = io::stress_field<dim>(c.problem, c.space, u);
@@ -197,7 +186,7 @@ TYPED_TEST(JudgementOf, OurOwnSolutionHasTheDistanceZero)
 TYPED_TEST(JudgementOf, AKnownFieldMoreIsTheDistance)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(2);
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   std::vector<double> u = random_free_vector({std::vector<char>(c.space.n_dofs(), 0), {}}, 1.0, 5);
   const std::vector<double> more = values<dim>(c.space, quadratic<dim>);
   const certify::ForeignSolution<dim> theirs{.degree = 2, .u = sum(u, 1, more)};
@@ -227,7 +216,7 @@ TYPED_TEST(JudgementOf, AKnownFieldMoreIsTheDistance)
 TYPED_TEST(JudgementOf, NothingIsWrongByAllOfIt)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(2);
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const std::vector<double> u = values<dim>(c.space, quadratic<dim>);
   const certify::ForeignSolution<dim> nothing{.degree = 2, .u = std::vector<double>(u.size(), 0.0)};
   const certify::Judgement found = certify::judge<dim>(c.problem, c.space, nothing, c.space, u, 0.01);
@@ -240,7 +229,7 @@ TYPED_TEST(JudgementOf, NothingIsWrongByAllOfIt)
 TYPED_TEST(JudgementOf, PowersOfTenAndSignsAreDoubted)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(2);
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const std::vector<double> u = values<dim>(c.space, quadratic<dim>);
   const auto doubt = [&](double factor)
   {
@@ -260,7 +249,7 @@ TYPED_TEST(JudgementOf, PowersOfTenAndSignsAreDoubted)
 TYPED_TEST(JudgementOf, RigidDifferencesAreFound)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(2);
+  const DiscreteProblem<dim> c = distorted_box<dim>(2);
   const std::vector<double> u = values<dim>(c.space, quadratic<dim>);
   std::vector<double> v = u;
   const std::vector<Point<dim>> places = c.space.node_points();
@@ -279,7 +268,7 @@ TYPED_TEST(JudgementOf, RigidDifferencesAreFound)
 TYPED_TEST(JudgementOf, OtherMeshesAreNamed)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   const mesh::ImportedSolution theirs = exported<dim>(c.mesh, 1, 7);
   const auto said = [&](const auto& change)
   {
@@ -319,7 +308,7 @@ TYPED_TEST(JudgementOf, OtherMeshesAreNamed)
 TYPED_TEST(JudgementOf, OtherMeshesAreInterpolated)
 {
   constexpr int dim = TypeParam::value;
-  const DiscreteProblem<dim> c = box_of_degree<dim>(1);
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
   mesh::MeshData<dim> data;
   if constexpr (dim == 2)
     data = mesh::box_mesh<2>({.lower = {-0.5, -0.5}, .upper = {3, 2}, .cells = {5, 4}});

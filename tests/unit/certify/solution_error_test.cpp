@@ -8,7 +8,7 @@
 #include <random>
 
 #include "support/dimensions.h"
-#include "support/discrete_problem.h"
+#include "support/distorted_box.h"
 #include "support/fields.h"
 #include "support/meshes.h"
 #include "tribound/fem/nested.h"
@@ -25,18 +25,6 @@ class SolutionErrorOf : public ::testing::Test
 {
 };
 TYPED_TEST_SUITE(SolutionErrorOf, Dimensions);
-
-/// No loads and no supports.
-template <int dim>
-DiscreteProblem<dim> distorted_box(int degree)
-{
-  mesh::MeshData<dim> data;
-  if constexpr (dim == 2)
-    data = block<2>({3, 2});
-  else
-    data = box<3>({0, 0, 0}, {1, 1, 1}, {1, 2, 1});
-  return {distorted(std::move(data), 4), {.material = lame(1.3, 0.3)}, {.degree = degree}};
-}
 
 template <int dim>
 mesh::Mesh<dim> bisected_at_random(const mesh::Mesh<dim>& initial, int levels, unsigned seed)
