@@ -47,7 +47,7 @@ std::string from_first(const std::string& text)
   return {characters.begin(), characters.end()};
 }
 
-/// The hooks of an object with the functions `level` and `step`, and `mark` and `stop`, functions or None.
+/// Of an object with the function `level`, and `mark` and `stop`, functions or None.
 template <int dim>
 app::LoopHooks<dim> loop_hooks(const py::object& hooks)
 {
@@ -73,13 +73,15 @@ app::LoopHooks<dim> loop_hooks(const py::object& hooks)
   return result;
 }
 
-adapt::StepObserver step_hook(const py::object& hooks)
+/// Of an object that also has the function `step`.
+app::RunHooks run_hooks(const py::object& hooks)
 {
-  return [&hooks](const adapt::CertifiedStep& step)
+  const auto after_step = [&hooks](const adapt::CertifiedStep& step)
   {
     const py::gil_scoped_acquire lock;
     hooks.attr("step")(step.step.step, step.step.residual, step.relative, step.step.seconds);
   };
+  return {.step = after_step, .plane = loop_hooks<2>(hooks), .space = loop_hooks<3>(hooks)};
 }
 
 app::CaseRequest request(const Document& document, const std::vector<std::string>& overrides, bool quiet)
@@ -90,8 +92,7 @@ app::CaseRequest request(const Document& document, const std::vector<std::string
 int run(const Document& document, const std::vector<std::string>& overrides, bool quiet,
         const py::object& hooks)
 {
-  const app::RunHooks all{
-      .step = step_hook(hooks), .plane = loop_hooks<2>(hooks), .space = loop_hooks<3>(hooks)};
+  const app::RunHooks all = run_hooks(hooks);
   const py::gil_scoped_release others_run;
   return static_cast<int>(app::run(request(document, overrides, quiet), {}, all));
 }
@@ -99,8 +100,7 @@ int run(const Document& document, const std::vector<std::string>& overrides, boo
 int restart(const std::string& place, const std::vector<std::string>& overrides, bool quiet,
             const py::object& hooks)
 {
-  const app::RunHooks all{
-      .step = step_hook(hooks), .plane = loop_hooks<2>(hooks), .space = loop_hooks<3>(hooks)};
+  const app::RunHooks all = run_hooks(hooks);
   const py::gil_scoped_release others_run;
   return static_cast<int>(app::run({.case_file = {}, .overrides = overrides, .quiet = quiet}, place, all));
 }
