@@ -28,6 +28,21 @@ def block(dimension: int, degree: int, **more: Any) -> dict[str, Any]:
     }
 
 
+def two_boxes(lower: list[int], upper: list[int], **more: Any) -> dict[str, Any]:
+    """A box on another one, each with so many cells, pressed together without friction."""
+    return {
+        "degree": 2,
+        "mesh": {"boxes": {
+            "lower": {"lower": [0, 0], "upper": [2, 1], "cells": lower},
+            "upper": {"lower": [0, 1], "upper": [2, 2], "cells": upper},
+        }},
+        "material": {"E": 1.0, "nu": 0.3},
+        "boundary": {"lower.bottom": {"displacement": [0, 0]}, "upper.top": {"displacement": [0, -0.01]}},
+        "contact": [{"slave": "upper.bottom", "master": "lower.top", "friction": "none", "gap": 0}],
+        **more,
+    }
+
+
 @lru_cache(maxsize=None)
 def solved(dimension: int, degree: int) -> tb.Result:
     return tb.run(block(dimension, degree, units=UNITS))

@@ -13,7 +13,7 @@ import numpy as np
 import tribound as tb
 from numpy.typing import NDArray
 
-from small_cases import block
+from small_cases import block, two_boxes
 
 Floats = NDArray[np.float64]
 PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
@@ -173,17 +173,7 @@ class Guarantee(unittest.TestCase):
         self.assertLess(narrow.stress[1], narrow.relative[1])  # averaged stresses are better than those of P1
 
     def test_regions_and_bodies(self) -> None:
-        case = {
-            "degree": 2,
-            "mesh": {"boxes": {
-                "lower": {"lower": [0, 0], "upper": [2, 1], "cells": [6, 3]},
-                "upper": {"lower": [0, 1], "upper": [2, 2], "cells": [6, 3]},
-            }},
-            "material": {"E": 1.0, "nu": 0.3},
-            "boundary": {"lower.bottom": {"displacement": [0, 0]}, "upper.top": {"displacement": [0, -0.01]}},
-            "contact": [{"slave": "upper.bottom", "master": "lower.top", "friction": "none", "gap": 0}],
-            "adapt": {"max_dofs": 20000},
-        }
+        case = two_boxes([6, 3], [6, 3], adapt={"max_dofs": 20000})
         theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": 1}).level
         with self.assertRaisesRegex(tb.InputError, "to which body"):
             tb.judge(case, (theirs.nodes, theirs.displacement))
@@ -192,10 +182,7 @@ class Guarantee(unittest.TestCase):
                 file = Path(directory) / "theirs.vtu"
                 theirs.to_meshio().write(file)
                 judged = tb.judge(case, file)
-                other = {**case, "mesh": {"boxes": {
-                    "lower": {"lower": [0, 0], "upper": [2, 1], "cells": [8, 4]},
-                    "upper": {"lower": [0, 1], "upper": [2, 2], "cells": [5, 4]},
-                }}}
+                other = two_boxes([8, 4], [5, 4], adapt={"max_dofs": 20000})
                 with self.assertRaisesRegex(tb.InputError, "--interpolate"):
                     tb.judge(other, file)
                 interpolated = tb.judge(other, file, interpolate=True)

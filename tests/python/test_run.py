@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import tribound as tb
 
-from small_cases import block, solved
+from small_cases import block, solved, two_boxes
 
 
 class Run(unittest.TestCase):
@@ -221,18 +221,7 @@ class Levels(unittest.TestCase):
             self.assertAlmostEqual(normal, -result.certificate["contact"]["normal"], delta=1e-6)
 
     def test_pairs_and_quantities(self) -> None:
-        case = {
-            "degree": 2,
-            "mesh": {"boxes": {
-                "lower": {"lower": [0, 0], "upper": [2, 1], "cells": [8, 4]},
-                "upper": {"lower": [0, 1], "upper": [2, 2], "cells": [6, 3]},
-            }},
-            "material": {"E": 1.0, "nu": 0.3},
-            "boundary": {"lower.bottom": {"displacement": [0, 0]}, "upper.top": {"displacement": [0, -0.01]}},
-            "contact": [{"slave": "upper.bottom", "master": "lower.top", "friction": "none", "gap": 0}],
-            "quantity": [{"kind": "energy"}],
-            "adapt": {"tolerance": 0.05},
-        }
+        case = two_boxes([8, 4], [6, 3], quantity=[{"kind": "energy"}], adapt={"tolerance": 0.05})
         result = tb.run(case)
         self.assertTrue(result.is_certified, result.reason)
         (quantity,) = result.quantities.values()
