@@ -30,7 +30,7 @@ ELEMENTS = {
     "hexahedron": (5, 3),
     "line3": (8, 1),
     "triangle6": (9, 2),
-    "triangle10": (21, 2),
+    "quad16": (36, 2),
 }
 
 

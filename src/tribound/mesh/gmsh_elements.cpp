@@ -11,6 +11,7 @@
 #include <span>
 
 #include "tribound/mesh/gmsh_library.h"
+#include "tribound/mesh/import/simplex_nodes.h"
 
 namespace tribound::mesh
 {
@@ -34,24 +35,15 @@ struct NumberedType
   ElementType type;
 };
 
-constexpr std::array<NumberedType, 18> numbered_types = {{{1, {Shape::segment, 2}},
-                                                          {8, {Shape::segment, 3}},
-                                                          {2, {Shape::triangle, 3}},
-                                                          {9, {Shape::triangle, 6}},
-                                                          {3, {Shape::quadrilateral, 4}},
-                                                          {16, {Shape::quadrilateral, 8}},
-                                                          {4, {Shape::tetrahedron, 4}},
-                                                          {10, {Shape::quadrilateral, 9}},
-                                                          {11, {Shape::tetrahedron, 10}},
-                                                          {5, {Shape::hexahedron, 8}},
-                                                          {17, {Shape::hexahedron, 20}},
-                                                          {12, {Shape::hexahedron, 27}},
-                                                          {6, {Shape::prism, 6}},
-                                                          {18, {Shape::prism, 15}},
-                                                          {13, {Shape::prism, 18}},
-                                                          {7, {Shape::pyramid, 5}},
-                                                          {19, {Shape::pyramid, 13}},
-                                                          {14, {Shape::pyramid, 14}}}};
+constexpr std::array<NumberedType, 24> numbered_types = {
+    {{1, {Shape::segment, 2}},        {8, {Shape::segment, 3}},       {26, {Shape::segment, 4}},
+     {27, {Shape::segment, 5}},       {2, {Shape::triangle, 3}},      {9, {Shape::triangle, 6}},
+     {21, {Shape::triangle, 10}},     {23, {Shape::triangle, 15}},    {3, {Shape::quadrilateral, 4}},
+     {16, {Shape::quadrilateral, 8}}, {4, {Shape::tetrahedron, 4}},   {10, {Shape::quadrilateral, 9}},
+     {11, {Shape::tetrahedron, 10}},  {29, {Shape::tetrahedron, 20}}, {30, {Shape::tetrahedron, 35}},
+     {5, {Shape::hexahedron, 8}},     {17, {Shape::hexahedron, 20}},  {12, {Shape::hexahedron, 27}},
+     {6, {Shape::prism, 6}},          {18, {Shape::prism, 15}},       {13, {Shape::prism, 18}},
+     {7, {Shape::pyramid, 5}},        {19, {Shape::pyramid, 13}},     {14, {Shape::pyramid, 14}}}};
 
 }  // namespace
 
@@ -67,18 +59,15 @@ namespace
 
 using GmshEdges = std::initializer_list<std::array<int, 2>>;
 
-/// The edges of solids in the order of Gmsh's middles; those of other shapes are ordered as here.
+/// The edges of solids in the order of Gmsh's middles; tetrahedra have an order of their own.
 std::span<const std::array<int, 2>> gmsh_edges(Shape shape)
 {
-  static constexpr GmshEdges tetrahedron = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
   static constexpr GmshEdges hexahedron = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
                                            {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
   static constexpr GmshEdges prism = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {3, 5}, {4, 5}};
   static constexpr GmshEdges pyramid = {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}};
   switch (shape)
   {
-    case Shape::tetrahedron:
-      return tetrahedron;
     case Shape::hexahedron:
       return hexahedron;
     case Shape::prism:
@@ -100,8 +89,22 @@ std::span<const int> gmsh_face_centres(Shape shape)
   return {};
 }
 
+std::vector<int> order_in_tetrahedron(const ElementType& type)
+{
+  static constexpr std::array<std::array<int, 2>, 6> edges = {
+      {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
+  static constexpr std::array<std::array<int, 3>, 4> faces = {{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}}};
+  const std::vector<NodeIndex> theirs = simplex_nodes(4, order_of(type), {edges, faces});
+  std::vector<int> order;
+  for (const NodeIndex& node : simplex_nodes(type))
+    order.push_back(static_cast<int>(std::ranges::find(theirs, node) - theirs.begin()));
+  return order;
+}
+
+/// Edges and triangles have the same order here and there.
 std::vector<int> node_order(const ElementType& type)
 {
+  if (type.shape == Shape::tetrahedron) return order_in_tetrahedron(type);
   const ShapeTable& table = table_of(type.shape);
   std::vector<int> order(type.n_nodes);
   std::iota(order.begin(), order.end(), 0);
@@ -127,19 +130,14 @@ GmshType to_gmsh(const ElementType& type)
 namespace
 {
 
-constexpr int n_orders = 2;
-
-/// Throws unless it is a type of order 1 or 2 that is known.
+/// Throws unless it is a type that is known.
 NumberedType known_type(const Where& where, int number)
 {
   if (const std::optional<ElementType> known = gmsh_type(number)) return {number, *known};
   const auto [name, order] = gmsh::element_properties(number);
-  if (order > n_orders)
-    throw InputError(where, fmt::format("the mesh has elements of order {} ({})", order, name),
-                     "the geometry is straight-sided whatever the degree of the case, and a shape needs no "
-                     "more than order 2; mesh with Mesh.ElementOrder = 1 or 2");
-  throw InputError(where, fmt::format("the mesh has elements that are not read ({})", name),
-                   "triangles, quadrilaterals, tetrahedra, hexahedra, prisms and pyramids of order 1 or 2");
+  throw InputError(where, fmt::format("the mesh has elements that are not read ({}, order {})", name, order),
+                   "triangles and tetrahedra of order 1 to 4; quadrilaterals, hexahedra, prisms and pyramids "
+                   "of order 1 or 2; for cells with straight sides Mesh.ElementOrder = 1 or 2 is enough");
 }
 
 }  // namespace
@@ -154,11 +152,10 @@ void check_elements(const Where& where, int mesh_dim)
   {
     const NumberedType found = known_type(where, number);
     if (!first) first = found;
-    const bool is_second = has_middles(found.type);
-    if (is_second != has_middles(first->type))
+    if (order_of(found.type) != order_of(first->type))
       throw InputError(where,
-                       fmt::format("the mesh has elements of order {} and of order {}", is_second ? 1 : 2,
-                                   is_second ? 2 : 1),
+                       fmt::format("the mesh has elements of order {} and of order {}", order_of(first->type),
+                                   order_of(found.type)),
                        "all cells and facets of one order: mesh again, with Mesh.ElementOrder = 1 or 2");
     if (reported && *reported != number)
       throw InputError(where,

@@ -29,8 +29,8 @@ struct GmshType
 /// 3 if there are solids of any shape, else 2. Throws InputError where there are no surfaces either.
 [[nodiscard]] int mesh_dimension(const Where& where);
 
-/// Throws InputError where cells and facets are of different orders, of order 3 or higher, or of unknown
-/// shape.
+/// Throws InputError where cells and facets are of different orders, or of an order or a shape that is not
+/// read.
 void check_elements(const Where& where, int mesh_dim);
 
 /// The types of the elements of this dimension, which are checked.

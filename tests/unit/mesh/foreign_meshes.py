@@ -41,6 +41,8 @@ TYPES = [
     ("vtkTriangle", "vtkTriangle", 3, TRIANGLES),
     ("vtkQuadraticTriangle", "vtkTriangle", 6, TRIANGLES),
     ("vtkLagrangeTriangle", "vtkTriangle", 6, TRIANGLES),
+    ("vtkLagrangeTriangle", "vtkTriangle", 10, TRIANGLES),
+    ("vtkLagrangeTriangle", "vtkTriangle", 15, TRIANGLES),
     ("vtkQuad", "vtkQuad", 4, SQUARE),
     ("vtkPixel", "vtkPixel", 4, PIXEL),
     ("vtkQuadraticQuad", "vtkQuad", 8, SQUARE),
@@ -49,6 +51,8 @@ TYPES = [
     ("vtkTetra", "vtkTetra", 4, TETRAHEDRA),
     ("vtkQuadraticTetra", "vtkTetra", 10, TETRAHEDRA),
     ("vtkLagrangeTetra", "vtkTetra", 10, TETRAHEDRA),
+    ("vtkLagrangeTetra", "vtkTetra", 20, TETRAHEDRA),
+    ("vtkLagrangeTetra", "vtkTetra", 35, TETRAHEDRA),
     ("vtkHexahedron", "vtkHexahedron", 8, CUBE),
     ("vtkVoxel", "vtkVoxel", 8, VOXEL),
     ("vtkQuadraticHexahedron", "vtkHexahedron", 20, CUBE),
@@ -257,7 +261,7 @@ def main():
     forms = itertools.cycle(itertools.product(VALUES, POINTS))
     for name, linear, n_nodes, cells in TYPES:
         box = Box(name, linear, n_nodes, cells)
-        name = f"{name}{box.dim}"
+        name = f"{name}{n_nodes}"
         every = name.startswith(("vtkQuadraticWedge", "vtkQuadraticTriangle"))
         modes = ["ascii", "binary", "base64", "raw"]
         for mode, order, compressor, header in itertools.product(modes, ["little", "big"], ["none", "zlib"], [32, 64]):

@@ -11,15 +11,17 @@
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tribound/mesh/import/cell_faces.h"
 #include "tribound/mesh/import/imported_mesh.h"
+#include "tribound/mesh/import/simplex_nodes.h"
 
 namespace tribound::testing_mesh
 {
 
-/// All 15 types of cells.
+/// All types of cells of order 1 and 2.
 inline const std::vector<mesh::ElementType> cell_types = {
     {mesh::Shape::triangle, 3},      {mesh::Shape::triangle, 6},      {mesh::Shape::quadrilateral, 4},
     {mesh::Shape::quadrilateral, 8}, {mesh::Shape::quadrilateral, 9}, {mesh::Shape::tetrahedron, 4},
@@ -27,6 +29,23 @@ inline const std::vector<mesh::ElementType> cell_types = {
     {mesh::Shape::hexahedron, 27},   {mesh::Shape::prism, 6},         {mesh::Shape::prism, 15},
     {mesh::Shape::prism, 18},        {mesh::Shape::pyramid, 5},       {mesh::Shape::pyramid, 13},
     {mesh::Shape::pyramid, 14}};
+
+/// Those of order 3 and 4, too.
+inline const std::vector<mesh::ElementType> all_cell_types = []
+{
+  std::vector<mesh::ElementType> types = cell_types;
+  for (const int n : {10, 15}) types.push_back({mesh::Shape::triangle, n});
+  for (const int n : {20, 35}) types.push_back({mesh::Shape::tetrahedron, n});
+  return types;
+}();
+
+/// The place of a node of a simplex between its corners.
+inline Point<3> place_of(const mesh::NodeIndex& node, std::span<const Point<3>> corners)
+{
+  Point<3> sum = Point<3>::Zero();
+  for (std::size_t v = 0; v < corners.size(); ++v) sum += node[v] * corners[v];
+  return sum / static_cast<double>(std::accumulate(node.begin(), node.end(), 0));
+}
 
 /// The cells of one cube (corners as of a hexahedron, 8: its centre), or of one square.
 inline std::vector<std::vector<int>> cells_of_cube(mesh::Shape shape)
@@ -113,7 +132,12 @@ class ImportedBox
       for (const int p : places) sum += x[p];
       return Point<3>(sum / static_cast<double>(places.size()));
     };
-    if (mesh::has_middles(type_))
+    if (mesh::is_simplex(type_.shape))
+    {
+      const std::vector<Point<3>> ends = std::exchange(x, {});
+      for (const mesh::NodeIndex& index : mesh::simplex_nodes(type_)) x.push_back(place_of(index, ends));
+    }
+    else if (mesh::has_middles(type_))
       for (int e = 0; e < table.n_edges; ++e) x.push_back(centre(table.edges[e]));
     for (int f = 0; f < table.n_faces && static_cast<int>(x.size()) < type_.n_nodes; ++f)
       if (table.faces[f].n == 4) x.push_back(centre(table.faces[f].span()));
@@ -169,7 +193,8 @@ class ImportedBox
   std::map<std::array<int, 3>, Index> nodes_{};
 };
 
-/// Every middle of a cell is in the middle of its edge, every centre in that of its face.
+/// Every node of a simplex is at its place, every middle of another cell in the middle of its edge, every
+/// centre in that of its face.
 inline std::string misplaced_nodes(const mesh::ImportedMesh& mesh)
 {
   for (const mesh::ElementBlock& block : mesh.cells)
@@ -183,6 +208,12 @@ inline std::string misplaced_nodes(const mesh::ImportedMesh& mesh)
         return (mesh.nodes[block.element(e)[place]] - sum / static_cast<double>(corners.size())).norm() <
                1e-6;
       };
+      std::vector<Point<3>> corners;
+      for (int i = 0; i < table.n_corners; ++i) corners.push_back(mesh.nodes[block.element(e)[i]]);
+      for (int i = 0; mesh::is_simplex(block.type.shape) && i < block.type.n_nodes; ++i)
+        if ((mesh.nodes[block.element(e)[i]] - place_of(mesh::simplex_nodes(block.type)[i], corners)).norm() >
+            1e-6)
+          return fmt::format("node {}", i);
       for (int i = 0; mesh::has_middles(block.type) && i < table.n_edges; ++i)
         if (!is_centre(table.n_corners + i, table.edges[i])) return fmt::format("edge {}", i);
       for (int f = 0; f < table.n_faces; ++f)

@@ -24,7 +24,7 @@ using testing_mesh::stress_error;
 TEST(SolutionOfPrograms, ViewsOfGmshAreOfNodesOrOfElements)
 {
   const Directory directory;
-  for (const mesh::ElementType& type : testing_mesh::cell_types)
+  for (const mesh::ElementType& type : testing_mesh::all_cell_types)
   {
 #ifdef __SANITIZE_ADDRESS__  // Gmsh 4.8 deletes an array of prisms as if it were one object
     if (type.shape == Shape::prism) continue;

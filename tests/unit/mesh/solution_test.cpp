@@ -27,8 +27,9 @@ const std::vector<std::string> solid_columns = {"x",   "y",   "z",   "ux",  "uy"
                                                 "sxx", "syy", "szz", "sxy", "syz", "sxz"};
 
 const std::vector<mesh::ElementType> types_of_vtk = {
-    {Shape::triangle, 3},    {Shape::triangle, 6}, {Shape::tetrahedron, 4},  {Shape::tetrahedron, 10},
-    {Shape::hexahedron, 27}, {Shape::prism, 18},   {Shape::quadrilateral, 9}};
+    {Shape::triangle, 3},    {Shape::triangle, 6},     {Shape::triangle, 10},    {Shape::triangle, 15},
+    {Shape::tetrahedron, 4}, {Shape::tetrahedron, 10}, {Shape::tetrahedron, 20}, {Shape::tetrahedron, 35},
+    {Shape::hexahedron, 27}, {Shape::prism, 18},       {Shape::quadrilateral, 9}};
 
 TEST(Solution, TablesHaveAnyOrderOfColumnsAndSeparator)
 {

@@ -212,7 +212,7 @@ Node::Table CaseMaker::contact(const PairGroups& pair)
 void CaseMaker::add_shape(const PairGroups& pair, Node::Table& table)
 {
   Node::Table shape;
-  if (mesh::has_both_orders(assembler_.mesh().cells)) return;  // the .msh has corners alone
+  if (mesh::has_several_orders(assembler_.mesh().cells)) return;  // the .msh has corners alone
   for (const auto& [side, group] : {std::pair("slave", pair.slave), std::pair("master", pair.master)})
   {
     if (std::ranges::none_of(face_groups_.members(group), [&](Index face) { return faces_.is_curved(face); }))

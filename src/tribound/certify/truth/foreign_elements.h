@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/certify/truth/foreign_nodes.h"
 #include "tribound/certify/truth/foreign_solution.h"
 #include "tribound/certify/truth/point_grid.h"
 #include "tribound/mesh/geometry.h"
@@ -92,20 +93,19 @@ class ForeignElements
     result_.is_exact = true;
     for (const mesh::ElementBlock& block : theirs_.mesh.cells)
     {
-      if (!is_linear_simplex(block.type)) result_.degree = 2;
-      if (!is_simplex(block.type)) result_.is_exact = false;
+      const bool is_simplex = mesh::is_simplex(block.type.shape);
+      result_.degree = std::max(result_.degree, is_simplex ? mesh::order_of(block.type) : 2);
+      if (is_simplex)
+      {
+        const auto& nodes = simplices_.emplace_back(std::in_place, block, nodes_, straight_);
+        result_.curved_distance = std::max(result_.curved_distance, nodes->curved_distance());
+        continue;
+      }
+      simplices_.emplace_back();
+      result_.is_exact = false;
+      if (mesh::has_middles(block.type)) measure_curves(block);
     }
-    measure_curves();
     if (result_.curved_distance > straight_) result_.is_exact = false;
-  }
-
-  [[nodiscard]] static bool is_simplex(const mesh::ElementType& type)
-  {
-    return type.shape == mesh::Shape::triangle || type.shape == mesh::Shape::tetrahedron;
-  }
-  [[nodiscard]] static bool is_linear_simplex(const mesh::ElementType& type)
-  {
-    return is_simplex(type) && !mesh::has_middles(type);
   }
 
   /// Nodes in one place are one cluster, named by the first of them.
@@ -135,21 +135,17 @@ class ForeignElements
     }
   }
 
-  void measure_curves()
+  void measure_curves(const mesh::ElementBlock& block)
   {
-    for (const mesh::ElementBlock& block : theirs_.mesh.cells)
-    {
-      const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
-      if (!mesh::has_middles(block.type)) continue;
-      for (std::size_t e = 0; e < block.size(); ++e)
-        for (int k = 0; k < table.n_edges; ++k)
-        {
-          const auto nodes = block.element(e);
-          const Point<dim> middle = (nodes_[nodes[table.edges[k][0]]] + nodes_[nodes[table.edges[k][1]]]) / 2;
-          result_.curved_distance =
-              std::max(result_.curved_distance, (nodes_[nodes[table.n_corners + k]] - middle).norm());
-        }
-    }
+    const mesh::ShapeTable& table = mesh::table_of(block.type.shape);
+    for (std::size_t e = 0; e < block.size(); ++e)
+      for (int k = 0; k < table.n_edges; ++k)
+      {
+        const auto nodes = block.element(e);
+        const Point<dim> middle = (nodes_[nodes[table.edges[k][0]]] + nodes_[nodes[table.edges[k][1]]]) / 2;
+        result_.curved_distance =
+            std::max(result_.curved_distance, (nodes_[nodes[table.n_corners + k]] - middle).norm());
+      }
   }
 
   struct Element
@@ -207,18 +203,39 @@ class ForeignElements
     return clusters_[node];
   }
 
-  [[nodiscard]] Terms terms_of(const Place& place, const std::array<int, dim + 1>& node) const
+  /// At a point of the cell.
+  [[nodiscard]] Terms terms_of(const Place& place, const Barycentric<dim>& lambda) const
   {
     const mesh::ElementBlock& block = theirs_.mesh.cells[place.element.block];
-    std::vector<int> ends;
-    for (int v = 0; v <= dim; ++v)
-      if (node[v] > 0) ends.push_back(place.corners[v]);
-    const auto rule = ends.size() == 1 ? std::vector<std::pair<int, double>>{{ends[0], 1.0}}
-                                       : mesh::middle_rule(block.type, ends[0], ends[1]);
+    const auto& simplices = simplices_[place.element.block];
+    Barycentric<dim> of_corners{};
+    for (int v = 0; simplices && v <= dim; ++v) of_corners[place.corners[v]] = lambda[v];
     Terms terms;
-    for (const auto& [slot, weight] : rule)
+    for (const auto& [slot, weight] :
+         simplices ? simplices->rule(of_corners) : quadratic_rule(block.type, place, lambda))
       terms.push_back({block.element(place.element.number)[slot], place.element.entry + slot, weight});
     return terms;
+  }
+
+  /// Of the quadratic function on a cell that is cut from an element.
+  [[nodiscard]] static ValueRule quadratic_rule(const mesh::ElementType& type, const Place& place,
+                                                const Barycentric<dim>& lambda)
+  {
+    static constexpr mesh::ElementType quadratic = dim == 2 ? mesh::ElementType{mesh::Shape::triangle, 6}
+                                                            : mesh::ElementType{mesh::Shape::tetrahedron, 10};
+    ValueRule rule;
+    for (const mesh::NodeIndex& node : mesh::simplex_nodes(quadratic))
+    {
+      const double weight = mesh::shape_function(node, lambda);
+      if (std::abs(weight) <= no_weight) continue;
+      std::vector<int> ends;
+      for (int v = 0; v <= dim; ++v)
+        if (node[v] > 0) ends.push_back(place.corners[v]);
+      const ValueRule at_node =
+          ends.size() == 1 ? ValueRule{{ends[0], 1.0}} : mesh::middle_rule(type, ends[0], ends[1]);
+      for (const auto& [slot, part] : at_node) rule.emplace_back(slot, weight * part);
+    }
+    return rule;
   }
 
   [[nodiscard]] std::int64_t number_of(Index node) const
@@ -256,6 +273,7 @@ class ForeignElements
   std::optional<PointGrid<dim>> grid_{};
   std::vector<Index> clusters_{};
   std::unordered_map<Index, std::vector<Element>> elements_of_{};
+  std::vector<std::optional<ForeignNodes<dim>>> simplices_{};  ///< per block; none for other shapes
   ForeignSolution<dim> result_{};
 };
 

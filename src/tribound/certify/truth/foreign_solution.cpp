@@ -51,7 +51,7 @@ class Carrier : private ForeignElements<dim>
     start(space);
     for (Index c = 0; c < mesh_.n_cells(); ++c)
       for (int i = 0; i < space.basis().n_nodes(); ++i)
-        set(space, c, i, terms_at(pieces, space.basis(), c, space.basis().node_point(i)));
+        set(space, c, i, terms_at(pieces, c, space.basis().node_point(i)));
     finish("interpolates their function, which is on another mesh, at the nodes of this one");
     return std::move(result_);
   }
@@ -69,6 +69,7 @@ class Carrier : private ForeignElements<dim>
   using Base::other_mesh;
   using Base::place_of;
   using Base::result_;
+  using Base::simplices_;
   using Base::straight_;
   using Base::terms_of;
   using Base::theirs_;
@@ -87,10 +88,16 @@ class Carrier : private ForeignElements<dim>
     {
       const Place place = place_of(mesh::points_of(mesh_.vertices(), mesh_.cell(c)));
       for (int i = 0; i < space.basis().n_nodes(); ++i)
-        set(space, c, i, terms_of(place, space.basis().node(i)));
+        set(space, c, i, terms_of(place, barycentric<dim>(space.basis().node_point(i))));
     }
-    finish(result_.is_exact ? "their function"
-                            : "the piecewise quadratic function that takes their values at the nodes");
+    constexpr std::array<std::string_view, fem::max_degree> words = {"linear", "quadratic", "cubic",
+                                                                     "quartic"};
+    const bool has_other_places =
+        std::ranges::any_of(simplices_, [](const auto& nodes) { return nodes && !nodes->are_equidistant(); });
+    finish(!result_.is_exact  ? fmt::format("the piecewise {} function that takes their values at the nodes",
+                                            words[result_.degree - 1])
+           : has_other_places ? "their function, whose nodes are not equidistant"
+                              : "their function");
   }
 
   // ---- on another mesh
@@ -102,15 +109,6 @@ class Carrier : private ForeignElements<dim>
     std::vector<Place> places;
     std::optional<mesh::BoxTree<dim>> tree;
   };
-
-  /// x = x_0 + J xhat in a simplex with these corners.
-  static Point<dim> coordinates(const std::array<Point<dim>, dim + 1>& corners, const Point<dim>& x)
-  {
-    Tensor<dim> jacobian;
-    for (int j = 0; j < dim; ++j) jacobian.col(j) = corners[j + 1] - corners[0];
-    const Tensor<dim> cofactor = mesh::cofactor<dim>(jacobian);
-    return cofactor.transpose() * (x - corners[0]) / jacobian.col(0).dot(cofactor.col(0));
-  }
 
   Pieces cut()
   {
@@ -135,8 +133,7 @@ class Carrier : private ForeignElements<dim>
 
   /// At a point of a cell, given in its reference coordinates. Where bodies touch, the side of the cell
   /// counts: it is looked for a little inside.
-  Terms terms_at(const Pieces& pieces, const fem::LagrangeBasis<dim>& basis, Index cell,
-                 const Point<dim>& xhat)
+  Terms terms_at(const Pieces& pieces, Index cell, const Point<dim>& xhat)
   {
     const mesh::CellMap<dim> map = mesh::cell_map(mesh_, cell);
     const Point<dim> inside = map(xhat + same_place.back() * (Point<dim>::Constant(1.0 / (dim + 1)) - xhat));
@@ -148,7 +145,7 @@ class Carrier : private ForeignElements<dim>
     pieces.tree->traverse([&](const mesh::BoundingBox<dim>& other) { return mesh::meet(box, other); },
                           [&](std::size_t k)
                           {
-                            const Point<dim> y = coordinates(pieces.corners[k], inside);
+                            const Point<dim> y = coordinates<dim>(pieces.corners[k], inside);
                             const double smallest = std::min(y.minCoeff(), 1 - y.sum());
                             if (smallest <= largest) return;
                             largest = smallest;
@@ -157,16 +154,7 @@ class Carrier : private ForeignElements<dim>
     if (best < 0 || largest < -1e-3)
       throw InputError(where_, fmt::format("has no element at ({:.6g})", fmt::join(inside, ", ")),
                        "a mesh that covers that of the case");
-    const Point<dim> y = coordinates(pieces.corners[best], map(xhat));
-    const fem::Tabulation<dim> table = basis.tabulate({&y, 1});
-    Terms terms;
-    for (int j = 0; j < table.n_nodes; ++j)
-      for (Term term : terms_of(pieces.places[best], basis.node(j)))
-      {
-        term.weight *= table.values[j];
-        terms.push_back(term);
-      }
-    return terms;
+    return terms_of(pieces.places[best], barycentric<dim>(coordinates<dim>(pieces.corners[best], map(xhat))));
   }
 
   // ---- without
@@ -241,11 +229,13 @@ class Carrier : private ForeignElements<dim>
     for (const Term& term : terms)
     {
       u += term.weight * in_plane<dim>(theirs_.displacement[term.node]);
+      if (!u.allFinite()) fail_value(term.node, "displacement");
       if (theirs_.stress.empty()) continue;
       const auto& values = theirs_.stress[theirs_.stress_of_elements ? term.entry : term.node];
       for (std::size_t k = 0; k < s.size(); ++k) s[k] += term.weight * values[k];
+      if (!std::ranges::all_of(s, [](double value) { return std::isfinite(value); }))
+        fail_value(term.node, "stress");
     }
-    if (!u.allFinite()) fail_value(terms, "displacement");
     const Index node = space.cell_nodes(cell)[i];
     for (int d = 0; d < dim; ++d)
     {
@@ -263,7 +253,6 @@ class Carrier : private ForeignElements<dim>
       tensor << s[0], s[3], s[3], s[1];
     else
       tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
-    if (!tensor.allFinite()) fail_value(terms, "stress");
   }
 
   void finish(const std::string& function)
@@ -274,9 +263,9 @@ class Carrier : private ForeignElements<dim>
                                      result_.curved_distance);
   }
 
-  [[noreturn]] void fail_value(const Terms& terms, std::string_view what) const
+  [[noreturn]] void fail_value(Index node, std::string_view what) const
   {
-    throw InputError(where_, fmt::format("has no {} at node {}", what, number_of(terms.front().node)),
+    throw InputError(where_, fmt::format("has no {} at node {}", what, number_of(node)),
                      "a number for every node");
   }
 

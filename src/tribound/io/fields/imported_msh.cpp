@@ -152,7 +152,7 @@ void write_msh(const std::filesystem::path& path, const mesh::ImportedMesh& mesh
   for (const mesh::CellSet& set : mesh.cell_sets) check(set.name);
   for (const mesh::FacetSet& set : mesh.facet_sets) check(set.name);
   AtomicFile file(path);
-  if (mesh::has_both_orders(mesh.cells))
+  if (mesh::has_several_orders(mesh.cells))
   {
     mesh::ImportedMesh corners = mesh;
     keep_corners(corners.cells);

@@ -31,7 +31,7 @@ struct CellFace
 struct FaceNodes
 {
   ElementType type;
-  std::array<Index, 9> nodes;
+  std::array<Index, max_face_nodes> nodes;
 
   [[nodiscard]] std::span<const Index> span() const& { return std::span(nodes).first(type.n_nodes); }
   void span() const&& = delete;  ///< would outlive the nodes

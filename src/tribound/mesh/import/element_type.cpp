@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
+
+#include "tribound/mesh/import/simplex_nodes.h"
 
 namespace tribound::mesh
 {
@@ -11,7 +14,7 @@ namespace
 {
 
 constexpr std::array<ShapeTable, 7> shape_tables = {{
-    {"segment", 1, 2, 1, {{{0, 1}}}, 0, {}, {2, 3, 0}},
+    {"segment", 1, 2, 1, {{{0, 1}}}, 0, {}, {2, 3, 4, 5}},
     {"triangle",
      2,
      3,
@@ -19,7 +22,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
      {{{0, 1}, {1, 2}, {2, 0}}},
      3,
      {{{2, {0, 1}}, {2, {1, 2}}, {2, {2, 0}}}},
-     {3, 6, 0}},
+     {3, 6, 10, 15}},
     {"quadrilateral",
      2,
      4,
@@ -27,7 +30,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
      {{{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
      4,
      {{{2, {0, 1}}, {2, {1, 2}}, {2, {2, 3}}, {2, {3, 0}}}},
-     {4, 8, 9}},
+     {4, 8, 9, 0}},
     {"tetrahedron",
      3,
      4,
@@ -35,7 +38,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
      {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}},
      4,
      {{{3, {0, 1, 2}}, {3, {0, 3, 1}}, {3, {1, 3, 2}}, {3, {2, 3, 0}}}},
-     {4, 10, 0}},
+     {4, 10, 20, 35}},
     {"hexahedron",
      3,
      8,
@@ -48,7 +51,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
        {4, {1, 5, 6, 2}},
        {4, {2, 6, 7, 3}},
        {4, {3, 7, 4, 0}}}},
-     {8, 20, 27}},
+     {8, 20, 27, 0}},
     {"prism",
      3,
      6,
@@ -56,7 +59,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
      {{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}},
      5,
      {{{3, {0, 1, 2}}, {3, {3, 5, 4}}, {4, {0, 3, 4, 1}}, {4, {1, 4, 5, 2}}, {4, {2, 5, 3, 0}}}},
-     {6, 15, 18}},
+     {6, 15, 18, 0}},
     {"pyramid",
      3,
      5,
@@ -64,7 +67,7 @@ constexpr std::array<ShapeTable, 7> shape_tables = {{
      {{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}}},
      5,
      {{{4, {0, 1, 2, 3}}, {3, {0, 4, 1}}, {3, {1, 4, 2}}, {3, {2, 4, 3}}, {3, {3, 4, 0}}}},
-     {5, 13, 14}},
+     {5, 13, 14, 0}},
 }};
 
 /// The place of the centre of a quadrilateral face among the nodes; -1: the type has none.
@@ -77,6 +80,20 @@ int centre_of_face(const ElementType& type, int face)
   return place;
 }
 
+/// The nodes of a face of a simplex, found by the corners of the cell between which they lie.
+void add_simplex_nodes(const ElementType& type, const FaceCorners& corners, FaceElement& face)
+{
+  const std::vector<NodeIndex>& nodes = simplex_nodes(type);
+  face.type.n_nodes = table_of(face.type.shape).n_nodes[order_of(type) - 1];
+  const std::vector<NodeIndex>& of_face = simplex_nodes(face.type);
+  for (std::size_t i = 0; i < of_face.size(); ++i)
+  {
+    NodeIndex node{};
+    for (int corner = 0; corner < corners.n; ++corner) node[corners.corners[corner]] = of_face[i][corner];
+    face.nodes[i] = static_cast<int>(std::ranges::find(nodes, node) - nodes.begin());
+  }
+}
+
 }  // namespace
 
 const ShapeTable& table_of(Shape shape)
@@ -84,9 +101,12 @@ const ShapeTable& table_of(Shape shape)
   return shape_tables[static_cast<std::size_t>(shape)];
 }
 
-bool is_known(const ElementType& type)
+int order_of(const ElementType& type)
 {
-  return type.n_nodes > 0 && std::ranges::count(table_of(type.shape).n_nodes, type.n_nodes) > 0;
+  const auto& known = table_of(type.shape).n_nodes;
+  const auto place = std::ranges::find(known, type.n_nodes) - known.begin();
+  if (place == std::ssize(known) || type.n_nodes == 0) return 0;
+  return static_cast<int>(is_simplex(type.shape) || place == 0 ? place + 1 : 2);
 }
 
 std::string describe(const ElementType& type)
@@ -107,6 +127,11 @@ FaceElement face_element(const ElementType& type, int face)
   const FaceCorners& corners = table.faces[face];
   const int n = corners.n;
   FaceElement result{{n == 2 ? Shape::segment : n == 3 ? Shape::triangle : Shape::quadrilateral, n}, {}};
+  if (is_simplex(type.shape))
+  {
+    add_simplex_nodes(type, corners, result);
+    return result;
+  }
   std::copy_n(corners.corners.begin(), n, result.nodes.begin());
   if (!has_middles(type)) return result;
   const int n_edges = table_of(result.type.shape).n_edges;

@@ -24,7 +24,7 @@ enum class Shape : char
 
 /// The nodes are the corners; of second order the middles of the edges; then the centres of the
 /// quadrilateral faces, and of a hexahedron and a quadrilateral its own. Corners, edges and faces are
-/// numbered as in Abaqus, CalculiX and VTK.
+/// numbered as in Abaqus, CalculiX and VTK. Simplices of higher order: simplex_nodes.h.
 struct ElementType
 {
   Shape shape;
@@ -52,17 +52,28 @@ struct ShapeTable
   std::array<std::array<int, 2>, 12> edges;
   int n_faces;
   std::array<FaceCorners, 6> faces;
-  std::array<int, 3> n_nodes;  ///< of the types, linear first; 0: there are no more
+  std::array<int, 4> n_nodes;  ///< of the types, linear first; 0: there are no more
 };
 
 [[nodiscard]] const ShapeTable& table_of(Shape shape);
 
-/// Whether there is such an element.
-[[nodiscard]] bool is_known(const ElementType& type);
+/// Segments, triangles and tetrahedra.
+[[nodiscard]] inline bool is_simplex(Shape shape)
+{
+  const ShapeTable& table = table_of(shape);
+  return table.n_corners == table.dim + 1;
+}
 
+/// Of simplices; that of other shapes is at most 2.
+inline constexpr int max_order = 4;
+
+/// The order of the element; 0: there is no such element.
+[[nodiscard]] int order_of(const ElementType& type);
+
+/// Whether it has a node in the middle of each edge, and no other nodes on edges but corners.
 [[nodiscard]] inline bool has_middles(const ElementType& type)
 {
-  return type.n_nodes > table_of(type.shape).n_corners;
+  return order_of(type) == 2;
 }
 
 /// "hexahedron of 20 nodes".
@@ -71,11 +82,14 @@ struct ShapeTable
 /// The place of the edge in ShapeTable::edges, whatever its direction; -1 if there is none.
 [[nodiscard]] int edge_number(const ShapeTable& table, int a, int b);
 
+inline constexpr int max_face_nodes = 15;  ///< of a triangle of order 4
+
 /// A face as an element of its own.
 struct FaceElement
 {
   ElementType type;
-  std::array<int, 9> nodes;  ///< places among the nodes of the cell; the first type.n_nodes count
+  std::array<int, max_face_nodes>
+      nodes;  ///< places among the nodes of the cell; the first type.n_nodes count
 
   [[nodiscard]] std::span<const int> span() const& { return std::span(nodes).first(type.n_nodes); }
   void span() const&& = delete;  ///< would outlive the nodes

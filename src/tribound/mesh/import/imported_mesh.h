@@ -3,6 +3,7 @@
 /// @file imported_mesh.h
 /// A mesh as a file has it, before it is made simplicial. Readers of all formats fill it.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -60,13 +61,11 @@ struct ImportedMesh
   std::vector<NodeSet> node_sets{};
 };
 
-/// Whether some elements have nodes in the middles of their edges, and some have none.
-[[nodiscard]] inline bool has_both_orders(std::span<const ElementBlock> blocks)
+/// Whether the elements are of several orders.
+[[nodiscard]] inline bool has_several_orders(std::span<const ElementBlock> blocks)
 {
-  bool has_first = false;
-  bool has_second = false;
-  for (const ElementBlock& block : blocks) (has_middles(block.type) ? has_second : has_first) = true;
-  return has_first && has_second;
+  return std::ranges::any_of(blocks, [&](const ElementBlock& block)
+                             { return order_of(block.type) != order_of(blocks.front().type); });
 }
 
 }  // namespace tribound::mesh

@@ -106,7 +106,7 @@ bool find_type(std::string_view name, InpElements& elements)
   };
   for (const Shape shape : {Shape::segment, Shape::triangle, Shape::quadrilateral, Shape::tetrahedron,
                             Shape::hexahedron, Shape::prism, Shape::pyramid})
-    if (has_dim(table_of(shape).dim) && is_known({shape, n}))
+    if (const int order = order_of({shape, n}); has_dim(table_of(shape).dim) && (order == 1 || order == 2))
     {
       elements.type = {shape, n};
       return true;

@@ -100,6 +100,7 @@ class Converter
       first += block.size();
     }
     for (const FacetSet& set : mesh_.facet_sets) add_facets(set);
+    note_order();
     if (all_middles) add_all_middles();
     if (!mesh_.source.file.empty())
       for (std::string& note : notes_) note.insert(0, mesh_.source.file + ": ");
@@ -118,6 +119,7 @@ class Converter
   void check_shapes(const ElementBlock& block, std::size_t first_cell,
                     std::span<const Index> element_of_cell) const;
   void add_facets(const FacetSet& set);
+  void note_order();
   void add_all_middles();
   void add_edge_nodes(const ElementBlock& block, std::span<const Index> element);
   /// The vertex numbers of the corners of an element, until the next call.
@@ -284,6 +286,17 @@ void Converter<dim>::add_facets(const FacetSet& set)
                     });
       if (has_middles(block.type)) add_edge_nodes(block, block.element(f));
     }
+}
+
+/// Facets of second order keep their shape; of higher order nothing is left but the corners.
+template <int dim>
+void Converter<dim>::note_order()
+{
+  int order = 0;
+  for (const ElementBlock& block : mesh_.cells) order = std::max(order, order_of(block.type));
+  if (order > 2)
+    notes_.push_back(fmt::format(
+        "of elements of order {} only the corners are taken: curved edges become straight", order));
 }
 
 /// Those of the facets of the boundary.

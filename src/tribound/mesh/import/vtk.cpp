@@ -214,10 +214,12 @@ void VtkReader::add_cell(const VtkPiece& piece, std::int64_t type, std::span<con
   }
   const VtkCellType* known = find_vtk_type(type, nodes.size(), piece.has_old_hexahedra);
   if (!known)
-    throw InputError(piece.where,
-                     fmt::format("cell {} is of type {} ({}) with {} points, which is not read", n_cells_,
-                                 type, vtk_type_name(type), nodes.size()),
-                     "triangles, quadrilaterals, tetrahedra, hexahedra, prisms and pyramids of order 1 or 2");
+    throw InputError(
+        piece.where,
+        fmt::format("cell {} is of type {} ({}) with {} points, which is not read", n_cells_, type,
+                    vtk_type_name(type), nodes.size()),
+        "triangles and tetrahedra of order 1 to 4; quadrilaterals, hexahedra, prisms and pyramids "
+        "of order 1 or 2");
   VtkBlock& block = block_of(*known);
   for (std::size_t i = 0; i < nodes.size(); ++i)
     block.elements.nodes.push_back(place_[nodes[known->order.empty() ? i : known->order[i]]]);
