@@ -45,6 +45,7 @@
 #include "tribound/mesh/import/middle_rule.h"
 #include "tribound/mesh/import/node_sets.h"
 #include "tribound/mesh/import/read.h"
+#include "tribound/mesh/import/simplex_nodes.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/mesh/overlay.h"
 #include "tribound/mesh/quadratic_facets.h"

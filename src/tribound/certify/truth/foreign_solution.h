@@ -21,16 +21,17 @@ struct ForeignSolution
   std::vector<double> u{};            ///< at the degrees of freedom of LagrangeSpace(mesh, q)
   std::vector<Tensor<dim>> stress{};  ///< [cell n_nodes + node]; empty: none
   double node_distance = 0;           ///< largest distance of a node from its vertex or its place on a cell
-  double curved_distance = 0;         ///< of nodes in the middle of edges from the straight edge
+  double curved_distance = 0;         ///< of nodes from their places in the straight element
   bool is_exact = true;               ///< whether it is their function, not one with its values at nodes
   std::string read_as{};              ///< in words
 };
 
 /// Finds the nodes by their coordinates, to 1e-6 of the size of the mesh, or 1e-5 where vertices are missing
 /// else, and where bodies touch by the elements that they belong to. On simplices with straight edges it is
-/// their function. On others it is the function in P^2 on the cells into which the elements were cut that
-/// takes their values; at the middles of edges that cut an element, those of its shape functions. Points
-/// without elements are in P^q for the largest q whose nodes are all among them.
+/// their function; on curved ones of order q that in P^q on straight cells with their values at the nodes.
+/// On other elements it is the function in P^2 on the cells into which they were cut that takes their values;
+/// at the middles of edges that cut an element, those of its shape functions. Points without elements are in
+/// P^q for the largest q whose nodes are all among them.
 ///
 /// Throws InputError for another mesh (tells whether it is larger or shifted), a node without a value or with
 /// two, points that may belong to either of two bodies.
