@@ -1,4 +1,4 @@
-"""Fields of degree 3 and 4 in files of VTK and Gmsh, whose libraries place the nodes: the distance is that of the table."""
+"""Fields of degree 3 and 4 in files of VTK and Gmsh, whose libraries place the nodes: judged as in a table."""
 
 import tempfile
 import unittest
@@ -29,10 +29,11 @@ def vtk_cell(d: int, degree: int) -> tuple[int, Floats]:
     cell.GetPointIds().SetNumberOfIds(n)
     cell.GetPoints().SetNumberOfPoints(n)
     cell.Initialize()
-    return cell.GetCellType(), np.reshape([cell.GetParametricCoords()[i] for i in range(3 * n)], (n, 3))[:, :d]
+    coordinates = [cell.GetParametricCoords()[i] for i in range(3 * n)]
+    return cell.GetCellType(), np.reshape(coordinates, (n, 3))[:, :d]
 
 
-def write_vtu(file: Path, kind: int, points: Floats, cells: NDArray[np.int64], displacement: Floats) -> None:
+def write_vtu(file: Path, kind: int, points: Floats, cells: NDArray[np.int64], u: Floats) -> None:
     from vtkmodules import vtkCommonCore as core
     from vtkmodules import vtkCommonDataModel as model
     from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -44,9 +45,9 @@ def write_vtu(file: Path, kind: int, points: Floats, cells: NDArray[np.int64], d
     grid.SetPoints(places)
     for cell in cells.tolist():
         grid.InsertNextCell(kind, len(cell), cell)
-    u = numpy_to_vtk(in_space(displacement), deep=True)
-    u.SetName("displacement")
-    grid.GetPointData().AddArray(u)
+    values = numpy_to_vtk(in_space(u), deep=True)
+    values.SetName("displacement")
+    grid.GetPointData().AddArray(values)
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetFileName(str(file))
     writer.SetInputData(grid)
@@ -76,7 +77,8 @@ def write_by_gmsh(file: Path, level: tb.Level) -> None:
         tags = list(range(1, len(level.mesh.points) + 1))
         gmsh.model.mesh.addNodes(d, entity, tags, in_space(level.mesh.points).ravel())
         numbers = list(range(1, len(level.mesh.cells) + 1))
-        gmsh.model.mesh.addElements(d, entity, [2 if d == 2 else 4], [numbers], [(level.mesh.cells + 1).ravel()])
+        corners = (level.mesh.cells + 1).ravel()
+        gmsh.model.mesh.addElements(d, entity, [2 if d == 2 else 4], [numbers], [corners])
         gmsh.model.mesh.setOrder(level.degree)
         tags, x, _ = gmsh.model.mesh.getNodes()
         u = in_space(level.at(np.reshape(x, (-1, 3))[:, :d]).displacement)
