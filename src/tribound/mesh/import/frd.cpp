@@ -39,7 +39,8 @@ class FrdReader
 
  private:
   void read_field_header();
-  [[nodiscard]] const FrdField* last(const std::string& name) const;
+  [[nodiscard]] const FrdField* last(const std::string& name, std::optional<int> step) const;
+  [[nodiscard]] std::vector<SolutionStep> steps(const std::string& name) const;
   [[nodiscard]] std::string all_fields() const;
   template <std::size_t n, class Put>
   void read_values(const FrdField& field, const Put& put);
@@ -72,13 +73,22 @@ void FrdReader::read_field_header()
   if (is_of_nodes) fields_.push_back(std::move(found));
 }
 
-/// The last one of the step.
-const FrdField* FrdReader::last(const std::string& name) const
+/// The last one of the step, or of all.
+const FrdField* FrdReader::last(const std::string& name, std::optional<int> step) const
 {
   const FrdField* found = nullptr;
   for (const FrdField& field : fields_)
-    if (field.name == name && (!choice_.step || field.step == *choice_.step)) found = &field;
+    if (field.name == name && (!step || field.step == *step)) found = &field;
   return found;
+}
+
+/// Each with the time of its last increment.
+std::vector<SolutionStep> FrdReader::steps(const std::string& name) const
+{
+  std::vector<SolutionStep> result;
+  for (const FrdField& field : fields_)
+    if (&field == last(name, field.step)) result.push_back({field.step, field.time});
+  return result;
 }
 
 std::string FrdReader::all_fields() const
@@ -152,12 +162,13 @@ ImportedSolution FrdReader::read()
   }
   mesh_.check();
   const std::string name = choice_.field.empty() ? "DISP" : choice_.field;
-  const FrdField* displacement = last(name);
+  const FrdField* displacement = last(name, choice_.step);
   if (!displacement)
     throw InputError(records_.where(),
                      fmt::format("there is no {}{}: {}", name,
                                  choice_.step ? fmt::format(" of step {}", *choice_.step) : "", all_fields()),
                      "*NODE FILE with U writes DISP");
+  solution_.steps = steps(name);
   read_displacement(*displacement);
   read_stress(displacement->state);
   std::vector<std::string> types;

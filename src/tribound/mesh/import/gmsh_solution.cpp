@@ -39,6 +39,7 @@ class GmshSolution
   }
   void find_views();
   [[nodiscard]] int step_of(const gmsh::View& view) const;
+  [[nodiscard]] static std::vector<SolutionStep> steps_of(const gmsh::View& view);
   void check_length(const std::vector<double>& values, std::size_t wanted, std::size_t tag,
                     const FieldName& field) const;
   [[nodiscard]] std::vector<double> of_nodes(const Data& data, const FieldName& field) const;
@@ -74,6 +75,15 @@ int GmshSolution::step_of(const gmsh::View& view) const
     fail(fmt::format("view \"{}\" has no step {}", view.name, *choice_.step),
          fmt::format("its steps are 0 to {}", view.n_steps - 1));
   return *choice_.step;
+}
+
+/// Those with data.
+std::vector<SolutionStep> GmshSolution::steps_of(const gmsh::View& view)
+{
+  std::vector<SolutionStep> steps;
+  for (int i = 0; i < view.n_steps; ++i)
+    if (const Data data = gmsh::model_data(view, i); !data.tags.empty()) steps.push_back({i, data.time});
+  return steps;
 }
 
 void GmshSolution::check_length(const std::vector<double>& values, std::size_t wanted, std::size_t tag,
@@ -188,6 +198,7 @@ ImportedSolution GmshSolution::read()
   const Data data = gmsh::model_data(views_[u], step);
   if (data.tags.empty())
     fail(fmt::format("view \"{}\" has no data in step {}", fields_[u].name, step), "another step");
+  solution_.steps = steps_of(views_[u]);
   read_displacement(data, fields_[u]);
   solution_.description =
       fmt::format("Gmsh view \"{}\", step {} (t = {:g})", fields_[u].name, step, data.time);

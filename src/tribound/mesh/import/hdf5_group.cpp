@@ -78,17 +78,30 @@ Hdf5Group Hdf5Group::group(const std::string& name) const
   return {file_, path_ + "/" + name, std::move(id)};
 }
 
-std::optional<std::int64_t> Hdf5Group::attribute(const std::string& name) const
+template <class T>
+std::optional<T> Hdf5Group::read_attribute(const std::string& name) const
 {
+  constexpr bool is_real = std::is_same_v<T, double>;
   if (H5Aexists(*id_, name.c_str()) <= 0) return {};
   const auto attribute = make_handle(H5Aopen(*id_, name.c_str(), H5P_DEFAULT), H5Aclose);
   const auto space = attribute ? make_handle(H5Aget_space(*attribute), H5Sclose) : Handle{};
   const auto type = attribute ? make_handle(H5Aget_type(*attribute), H5Tclose) : Handle{};
-  std::int64_t value = 0;
-  if (!space || !type || H5Sget_simple_extent_npoints(*space) != 1 || H5Tget_class(*type) != H5T_INTEGER ||
-      H5Aread(*attribute, H5T_NATIVE_INT64, &value) < 0)
+  T value = 0;
+  if (!space || !type || H5Sget_simple_extent_npoints(*space) != 1 ||
+      H5Tget_class(*type) != (is_real ? H5T_FLOAT : H5T_INTEGER) ||
+      H5Aread(*attribute, is_real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, &value) < 0)
     fail(name);
   return value;
+}
+
+std::optional<std::int64_t> Hdf5Group::attribute(const std::string& name) const
+{
+  return read_attribute<std::int64_t>(name);
+}
+
+std::optional<double> Hdf5Group::real(const std::string& name) const
+{
+  return read_attribute<double>(name);
 }
 
 std::optional<std::string> Hdf5Group::text(const std::string& name) const

@@ -25,6 +25,8 @@ class Hdf5Group
   [[nodiscard]] Hdf5Group group(const std::string& name) const;
   /// An attribute that is an integer; nothing if there is none with the name.
   [[nodiscard]] std::optional<std::int64_t> attribute(const std::string& name) const;
+  /// The same of a number with a fraction.
+  [[nodiscard]] std::optional<double> real(const std::string& name) const;
 
   /// An attribute that is a text of fixed length; nothing if there is none with the name.
   [[nodiscard]] std::optional<std::string> text(const std::string& name) const;
@@ -44,6 +46,8 @@ class Hdf5Group
   {
   }
   [[noreturn]] void fail(const std::string& name) const;
+  template <class T>
+  [[nodiscard]] std::optional<T> read_attribute(const std::string& name) const;
   template <class T>
   [[nodiscard]] std::vector<T> read(const std::string& name) const;
 

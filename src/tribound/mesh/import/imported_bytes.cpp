@@ -178,6 +178,7 @@ std::string bytes_of(const ImportedSolution& solution)
   bytes.put(solution.stress);
   bytes.put(static_cast<std::size_t>(solution.stress_of_elements ? 1 : 0));
   bytes.put(std::string_view(solution.description));
+  bytes.put(solution.steps);
   return bytes.take();
 }
 
@@ -250,6 +251,7 @@ ImportedSolution solution_from(std::string_view result, const Where& source)
   bytes.get(number);
   solution.stress_of_elements = number != 0;
   bytes.get(solution.description);
+  bytes.get(solution.steps);
   return solution;
 }
 

@@ -24,10 +24,12 @@ ImportedSolution read_solution(const std::filesystem::path& file, const Solution
     throw InputError(where, fmt::format("a {} has no steps to choose from", suffix),
                      "leave the step out, and name the file of the step that is wanted");
   if (is_vtk) return read_vtk_solution(file, choice);
+  if (suffix == ".pvd") return read_pvd(file, choice);
   if (suffix == ".csv") return read_csv(file, choice);
   if (suffix == ".med") return read_med_solution(file, choice);
-  throw InputError(where, fmt::format("solutions of the format \"{}\" are not read", suffix),
-                   ".csv, .msh, .vtu, .pvtu, .vtk, .frd and .med are; ParaView saves what it reads as .vtu");
+  throw InputError(
+      where, fmt::format("solutions of the format \"{}\" are not read", suffix),
+      ".csv, .msh, .vtu, .pvtu, .vtk, .pvd, .frd and .med are; ParaView saves what it reads as .vtu");
 }
 
 }  // namespace tribound::mesh

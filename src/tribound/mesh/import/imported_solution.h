@@ -15,6 +15,13 @@
 namespace tribound::mesh
 {
 
+/// A step of the displacement in a file.
+struct SolutionStep
+{
+  int number = 0;  ///< as SolutionChoice::step has it
+  double t = 0;    ///< its time
+};
+
 /// A displacement, and perhaps a stress, as a file has it, on the elements that the file has.
 struct ImportedSolution
 {
@@ -23,8 +30,9 @@ struct ImportedSolution
   std::vector<std::array<double, 6>> stress{};  ///< xx yy zz xy yz xz; NaN in all where there is none
   /// The stress has one entry per entry of the nodes of all blocks of mesh.cells, in order; else per node.
   bool stress_of_elements = false;
-  std::string description{};         ///< "CalculiX results, step 2 (t = 1), C3D10"
-  std::vector<std::string> notes{};  ///< what was left out or chosen, "theirs.vtu: ..."
+  std::string description{};          ///< "CalculiX results, step 2 (t = 1), C3D10"
+  std::vector<SolutionStep> steps{};  ///< all that the file has, as it has them; none where files have one
+  std::vector<std::string> notes{};   ///< what was left out or chosen, "theirs.vtu: ..."
 };
 
 /// What to read of a file that has several fields or steps.
@@ -35,7 +43,7 @@ struct SolutionChoice
   std::optional<int> step{};  ///< by the number that the file has; nothing: the last
 };
 
-/// Reads .csv, .msh, .vtu, .pvtu, .vtk, .frd and .med, by the suffix.
+/// Reads .csv, .msh, .vtu, .pvtu, .vtk, .pvd, .frd and .med, by the suffix.
 ///
 /// CSV: a header with x, y, z, ux, uy, uz, sxx, syy, szz, sxy, syz, sxz in any order, in 2D without those of
 /// z; columns between commas, semicolons, tabs or blanks; comments after '#', which the header may be, too.
@@ -50,6 +58,8 @@ struct SolutionChoice
 /// 3 components, stresses those of VTK. Steps are counted as in the file, from 0.
 ///
 /// .frd of CalculiX, as text: steps are those of the deck; the last increment of a step is read.
+///
+/// .pvd: the .vtu, .pvtu or .vtk of a time. Steps are counted as in the file, from 1.
 ///
 /// .med of the versions 3 and 4: fields of nodes, which may be on profiles; components and names as of VTK's
 /// arrays. Steps are the numbers of the times (NDT).

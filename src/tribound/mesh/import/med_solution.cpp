@@ -37,6 +37,7 @@ class MedFields
   [[nodiscard]] FieldName field_of(const std::string& name, const Hdf5Group& field) const;
   [[nodiscard]] std::optional<Hdf5Group> time_of(const FieldName& field,
                                                  std::optional<std::int64_t> step) const;
+  [[nodiscard]] std::vector<SolutionStep> steps_of(const FieldName& field) const;
   [[nodiscard]] std::vector<double> values_of(const FieldName& field, const Hdf5Group& time) const;
   void add_profile(const Hdf5Group& nodes, const std::string& profile, const FieldName& field,
                    std::vector<double>& values) const;
@@ -82,6 +83,22 @@ std::optional<Hdf5Group> MedFields::time_of(const FieldName& field, std::optiona
   return found;
 }
 
+/// Of times with the same number, the last one, as time_of() has it.
+std::vector<SolutionStep> MedFields::steps_of(const FieldName& field) const
+{
+  std::vector<SolutionStep> steps;
+  const Hdf5Group group = file_.group("CHA").group(field.name);
+  for (const std::string& name : group.names())
+  {
+    const Hdf5Group time = group.group(name);
+    if (!time.has("NOE")) continue;
+    const auto number = static_cast<int>(time.attribute("NDT").value_or(0));
+    std::erase_if(steps, [&](const SolutionStep& step) { return step.number == number; });
+    steps.push_back({number, time.real("PDT").value_or(0)});
+  }
+  return steps;
+}
+
 /// All values of the first component, all of the second, ...
 void MedFields::add_profile(const Hdf5Group& nodes, const std::string& profile, const FieldName& field,
                             std::vector<double>& values) const
@@ -123,6 +140,7 @@ ImportedSolution MedFields::read() const
   if (!time)
     throw InputError(where_, fmt::format("field \"{}\" has no step {}", field.name, choice_.step.value_or(0)),
                      "the number of a time (NDT) of the field");
+  solution.steps = steps_of(field);
   solution.displacement = displacements_of(values_of(field, *time), field);
   const std::int64_t step = time->attribute("NDT").value_or(0);
   solution.description = fmt::format("MED field \"{}\", step {}", field.name, step);

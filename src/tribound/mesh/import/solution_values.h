@@ -61,6 +61,7 @@ struct FieldName
                                                   const SolutionChoice& choice);
 [[nodiscard]] ImportedSolution read_med_solution(const std::filesystem::path& file,
                                                  const SolutionChoice& choice);
+[[nodiscard]] ImportedSolution read_pvd(const std::filesystem::path& file, const SolutionChoice& choice);
 [[nodiscard]] ImportedSolution read_vtk_solution(const std::filesystem::path& file,
                                                  const SolutionChoice& choice);
 
