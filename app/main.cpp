@@ -104,21 +104,28 @@ void describe_judge(CLI::App& command, Arguments& arguments)
   command.group(case_commands);
   add_case_arguments(command, arguments)->required();
   command
-      .add_option("--solution", request.solution,
-                  "A file with their displacement at the nodes of the mesh of the case")
+      .add_option(
+          "--solution", request.solutions,
+          "A file with their displacement at the nodes of the mesh of the case; with --steps it may be "
+          "repeated")
       ->required()
+      ->allow_extra_args(false)
       ->type_name("FILE");
   command.add_flag("--interpolate", request.interpolate,
                    "Judge the interpolant of a solution on another mesh");
   command.add_option("--field", request.field, "The name of their displacement in the file")
       ->type_name("NAME");
   command.add_option("--stress", request.stress, "The name of their stress in the file")->type_name("NAME");
+  command.add_flag(
+      "--steps", request.steps,
+      "Judge every load step of the case by the step of the file, or the file, that belongs to it");
   command.add_option("--step", request.step, "The step of the file; default: the last")->type_name("N");
   command.add_option("--load-step", request.load_step, "The load step of the case; default: the last")
       ->type_name("N");
   command
       .add_option("--number", request.numbers,
-                  "What they have computed for a quantity of the case; may be repeated")
+                  "What they have computed for a quantity of the case; with --steps a value for each; may be "
+                  "repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command

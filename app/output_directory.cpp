@@ -1,5 +1,7 @@
 #include "app/output_directory.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <system_error>
 #include <variant>
@@ -11,6 +13,24 @@
 
 namespace tribound::app
 {
+
+namespace
+{
+
+constexpr const char* judged_steps = "judged_steps";
+
+void remove_judged_steps(const std::filesystem::path& directory)
+{
+  std::error_code error;
+  for (const auto& step : std::filesystem::directory_iterator(directory, error))
+  {
+    io::remove_results(step.path(), {"judged_cells.csv", "judged.vtu"});
+    std::filesystem::remove(step.path(), error);  // fails if it has other contents
+  }
+  std::filesystem::remove(directory, error);
+}
+
+}  // namespace
 
 void require_mesh_elsewhere(const case_file::Config& config)
 {
@@ -35,7 +55,15 @@ std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& con
   for (const char* unfinished : {io::unfinished_pass, io::unfinished_steps})
     io::remove_series_directory(path / unfinished);
   io::remove_series(path);
+  remove_judged_steps(path / judged_steps);
   return directory;
+}
+
+std::filesystem::path make_step_directory(const std::filesystem::path& directory, std::size_t step)
+{
+  std::filesystem::path result = directory / judged_steps / fmt::format("{:03}", step + 1);
+  io::make_series_directory(result);
+  return result;
 }
 
 std::string effective_file_name(const case_file::Config& config)

@@ -3,6 +3,8 @@
 /// @file output_directory.h
 /// The output directory of a case.
 
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -19,6 +21,10 @@ void require_mesh_elsewhere(const case_file::Config& config);
 /// unless they are kept. Throws InputError where nothing can be written.
 [[nodiscard]] std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& config,
                                                                   bool keeps_results);
+
+/// Makes the directory of a load step that was judged; steps are counted from 0. Throws WriteError.
+[[nodiscard]] std::filesystem::path make_step_directory(const std::filesystem::path& directory,
+                                                        std::size_t step);
 
 /// case.toml, or case_effective.toml where the former is the input file and has other contents: it is not
 /// replaced.

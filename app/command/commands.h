@@ -113,13 +113,14 @@ struct SweepRequest : CaseRequest
 /// What `judge` compares with the case.
 struct JudgeRequest : CaseRequest
 {
-  std::string solution{};              ///< a file of another program
-  std::string field{};                 ///< its displacement; empty: a usual name
-  std::string stress{};                ///< its stress; empty: a usual name, if there is one
+  std::vector<std::string> solutions{};  ///< files of another program; several: of a load step each
+  std::string field{};                   ///< its displacement; empty: a usual name
+  std::string stress{};                  ///< its stress; empty: a usual name, if there is one
+  bool steps = false;                  ///< every load step of the case, each with the step that belongs to it
   std::optional<int> step{};           ///< of the file; absent: the last
   std::optional<int> load_step{};      ///< of the case; absent: the last
   bool interpolate = false;            ///< on another mesh than that of the case: the interpolant is judged
-  std::vector<std::string> numbers{};  ///< NAME=VALUE of quantities that they have computed
+  std::vector<std::string> numbers{};  ///< NAME=VALUE of quantities that they have computed, a value a step
   std::optional<double> accept{};      ///< the largest relative error
 };
 
@@ -128,7 +129,7 @@ struct JudgeRequest : CaseRequest
 /// beside the distance of theirs (judge.sharpness) or a limit of [adapt] is met. Prints the judgement and
 /// writes it, with the run, to `judge` in output.directory. Success: judged, or the error is at most
 /// `accept`; budget_used_up: the interval is wider than asked for, or not narrow enough to decide; rejected:
-/// it is larger. Throws InputError for a solution on another mesh.
+/// it is larger; of several load steps that of the worst. Throws InputError for a solution on another mesh.
 [[nodiscard]] ExitCode judge(const JudgeRequest& request);
 
 /// `tribound mesh`: the mesh of a file, with the options of [mesh], for Gmsh and for other cases.

@@ -1,31 +1,24 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "app/command/judged_step.h"
 #include "app/command/run.h"
+#include "app/command/step_pairs.h"
 #include "app/command/with_case.h"
-#include "app/console/console.h"
 #include "app/console/text.h"
+#include "app/output_directory.h"
 #include "app/page/judgement_page.h"
 #include "app/page/page_template.h"
+#include "app/result/judged_steps.h"
 #include "app/result/judgement.h"
 #include "app/shared_file.h"
-#include "tribound/adapt/error_bars.h"
-#include "tribound/case/quantity_reader.h"
-#include "tribound/case/resolve.h"
-#include "tribound/certify/energy/energy_bound.h"
-#include "tribound/contact/nitsche/nitsche.h"
-#include "tribound/contact/nitsche/penalty.h"
-#include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
-#include "tribound/io/record/error_bars.h"
-#include "tribound/mesh/import/imported_solution.h"
 
 namespace tribound::app
 {
@@ -33,25 +26,60 @@ namespace tribound::app
 namespace
 {
 
-/// A number of theirs that the user gives: NAME=VALUE.
-std::pair<std::string, double> parse_number(const std::string& text)
+/// Numbers of theirs that the user gives: NAME=VALUE, or one for each of their steps, NAME=VALUE,VALUE.
+GivenNumber parse_number(const std::string& text, std::size_t n_steps)
 {
   const std::size_t sign = text.rfind('=');
-  double value = 0;
-  const char* end = text.data() + text.size();
-  if (sign != std::string::npos)
-    if (const auto [stop, error] = std::from_chars(text.data() + sign + 1, end, value);
-        error == std::errc{} && stop == end && std::isfinite(value))
-      return {text.substr(0, sign), value};
-  throw InputError({.file = "--number " + text}, "is no number of a quantity",
-                   "--number NAME=VALUE with the name of a [[quantity]] of the case");
+  GivenNumber number{.text = text, .name = text.substr(0, sign), .values = {}};
+  const char* place = sign == std::string::npos ? nullptr : text.data() + sign;
+  const char* const end = text.data() + text.size();
+  while (place && place != end)
+  {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(place + 1, end, value);
+    const bool is_number = error == std::errc{} && (stop == end || *stop == ',') && std::isfinite(value);
+    place = is_number ? stop : nullptr;
+    number.values.push_back(value);
+  }
+  if (!place)
+    throw InputError({.file = "--number " + text}, "is no number of a quantity",
+                     "--number NAME=VALUE with the name of a [[quantity]] of the case");
+  if (number.values.size() != n_steps)
+    throw InputError(
+        {.file = "--number " + text},
+        fmt::format("has {} for {}", count(static_cast<long>(number.values.size()), "value", "values"),
+                    count(static_cast<long>(n_steps), "step", "steps")),
+        "a value for each step that is judged, between commas");
+  return number;
 }
 
-/// Kinds that follow from the displacement alone.
-bool follows_from_displacement(problem::QuantityKind kind)
+/// The steps to be judged: those that belong to the load steps of the case, or the one that is chosen.
+std::vector<TheirStep> chosen_steps(const JudgeRequest& request, const case_file::Config& config)
 {
-  using K = problem::QuantityKind;
-  return kind == K::energy || kind == K::load_work || kind == K::mean_displacement || kind == K::spring_force;
+  if (!request.steps)
+  {
+    if (request.solutions.size() > 1)
+      throw InputError({.file = request.solutions[1]}, "is a second solution",
+                       "--steps judges a file for each load step of the case");
+    return {{.file = request.solutions.front()}};
+  }
+  if (!config.history)
+    throw InputError({.file = config.file}, "has no load steps", "without --steps its only state is judged");
+  if (request.step || request.load_step)
+    throw InputError({.file = "--steps"}, "judges all load steps, but one is chosen",
+                     "either --steps, or --step and --load-step");
+  std::vector<TheirStep> all = all_steps(request);
+  std::vector<TheirStep> chosen;
+  for (const std::size_t place : pair_steps(config.history->program.targets, all))
+    chosen.push_back(std::move(all[place]));
+  return chosen;
+}
+
+mesh::ImportedSolution solution_of(const JudgeRequest& request, TheirStep& their)
+{
+  if (their.solution) return *std::exchange(their.solution, std::nullopt);
+  const std::optional<int> step = their.step ? their.step->number : request.step;
+  return mesh::read_solution(their.file, {request.field, request.stress, step});
 }
 
 /// Meshes follow the energy error, and only sharpness and limits end the run.
@@ -71,160 +99,88 @@ class Judge
 {
  public:
   Judge(const JudgeRequest& request, const case_file::Config& config, mesh::Mesh<dim> mesh)
-      : request_(request),
-        mesh_(std::move(mesh)),
-        problem_(case_file::resolve(config, mesh_)),
-        quantities_(case_file::resolve_quantities<dim>(config, problem_, mesh_.boundary_names()))
+      : request_(request), case_(config, std::move(mesh))
   {
-    record_.facts = case_file::case_facts(config, dim);
-    record_.sharpness = config.judge.sharpness;
-    record_.accept = request.accept;
-    read();
-    measure(config);
+    if (request.steps) targets_ = config.history->program.targets;
+    std::vector<TheirStep> theirs = chosen_steps(request, config);
+    std::vector<GivenNumber> numbers;
+    for (const std::string& text : request.numbers) numbers.push_back(parse_number(text, theirs.size()));
+    for (std::size_t i = 0; i < theirs.size(); ++i)
+    {
+      const mesh::ImportedSolution solution = solution_of(request, theirs[i]);
+      for (const std::string& text : solution.notes)
+        if (!request.quiet && is_first_process()) note(text);
+      steps_.push_back(
+          std::make_unique<JudgedStep<dim>>(case_, request, theirs[i].file, solution, numbers, i));
+    }
   }
 
-  /// The level, or the load step, against theirs.
-  void operator()(const std::shared_ptr<const KeptLevel<dim>>& kept, const io::LevelRecord& record)
+  /// The level, or the load step, against theirs. Only the level of the worst step is kept.
+  void operator()(const std::shared_ptr<const KeptLevel<dim>>& level, const io::LevelRecord& record)
   {
-    const KeptLevel<dim>& level = *kept;
-    if (level.t && request_.load_step && *request_.load_step != level.number) return;
-    judged_ = kept;
-    if (level.t) record_.load_step = level.number;
-    record_.cells = static_cast<long>(level.discrete->mesh.n_global_cells());
-    const std::optional<certify::EnergyBound>& energy = level.level.energy;
-    if (record.balance) record_.balance(*record.balance);
-    record_.judgement.reset();
-    record_.reason = energy ? energy->reason : "certify.energy is off";
-    if (energy) take_intervals(*energy);
-    if (!record_.reason.empty()) return;
-    record_.target = io::words_of(energy->target);
-    // The problem of the level has the initial stress of its load step.
-    record_.judgement = certify::judge<dim>(level.discrete->form.problem(), *space_, theirs_,
-                                            level.discrete->space, level.level.u, energy->bound);
+    JudgedStep<dim>* judged = step_of(*level);
+    if (!judged) return;
+    judged->judge(level, record);
+    for (const auto& other : steps_)
+      if (other.get() != judged && judged->has_level() && other->has_level())
+        (judged->is_worse_than(*other) ? *other : *judged).drop_level();
   }
 
-  [[nodiscard]] JudgementRecord& record() { return record_; }
+  /// The load steps so far are those of a whole pass.
+  void accept()
+  {
+    for (const auto& step : steps_) step->accept();
+    next_ = 0;
+  }
 
-  /// judgement.json, judgement.html, judged_cells.csv, and their displacement with the distances as
-  /// judged.vtu.
+  [[nodiscard]] std::vector<JudgementRecord> records() const
+  {
+    std::vector<JudgementRecord> records;
+    for (const auto& step : steps_) records.push_back(step->record());
+    return records;
+  }
+  [[nodiscard]] bool is_settled() const { return steps_.front()->record().is_settled(); }
+
+  /// judgement.json, judgement.html with the worst step, and the fields of each.
   void write(const case_file::OutputConfig& output) const
   {
     const std::filesystem::path& directory = output.directory;
-    io::write_file(directory / "judgement.json", io::json_text(judgement_object(record_)));
-    if (record_.judgement) write_fields(directory);
+    const std::vector<JudgementRecord> records = this->records();
+    const io::Json judgement =
+        request_.steps ? judged_steps_object(records) : judgement_object(records.front());
+    io::write_file(directory / "judgement.json", io::json_text(judgement));
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (records[i].judgement)
+        steps_[i]->write_fields(request_.steps ? make_step_directory(directory, i) : directory);
     const PageTemplate page(output.report ? find_shared_file("report.html") : std::filesystem::path{});
-    if (!page.empty()) write_judgement_page(page, directory, record_, page_surfaces());
+    if (!page.empty())
+      write_judgement_page(page, directory, records, steps_[worst_step(records)]->surfaces());
+  }
+
+  [[nodiscard]] std::string text(const std::string& directory) const
+  {
+    const std::vector<JudgementRecord> records = this->records();
+    return request_.steps ? judged_steps_text(records, directory)
+                          : judgement_text(records.front(), directory);
   }
 
  private:
-  void write_fields(const std::filesystem::path& directory) const
+  /// The step of theirs that a level is compared with; null: none. Between the load steps of the case there
+  /// are others where Newton's method has needed them.
+  [[nodiscard]] JudgedStep<dim>* step_of(const KeptLevel<dim>& level)
   {
-    const certify::Judgement& judgement = *record_.judgement;
-    io::write_file(directory / "judged_cells.csv", judged_cells_csv<dim>(mesh_, judgement.displacement));
-    std::vector<io::CellField> fields = {{"distance", judgement.displacement.cells}};
-    if (judgement.stress) fields.push_back({"stress_distance", judgement.stress->cells});
-    io::write_level_vtu<dim>({.own = directory / "judged.vtu"}, {}, problem_, *space_, theirs_.u, fields);
-  }
-
-  [[nodiscard]] io::Json page_surfaces() const
-  {
-    if (!record_.judgement || n_processes() > 1)
-      return nullptr;  // of a mesh that is shared out there is a part
-    return judged_surfaces<dim>(form(), theirs_, *record_.judgement, judged_->discrete->space,
-                                judged_->level.u);
-  }
-
-  [[nodiscard]] contact::NitscheForm<dim> form() const
-  {
-    return {problem_, *space_, contact::default_gamma0(theirs_.degree)};
-  }
-
-  void read()
-  {
-    const mesh::ImportedSolution solution =
-        mesh::read_solution(request_.solution, {request_.field, request_.stress, request_.step});
-    for (const std::string& text : solution.notes)
-      if (!request_.quiet && is_first_process()) note(text);
-    theirs_ = request_.interpolate ? certify::interpolated_solution<dim>(solution, mesh_)
-                                   : certify::foreign_solution<dim>(solution, mesh_);
-    space_.emplace(mesh_, theirs_.degree);
-    record_.solution = request_.solution;
-    record_.description = solution.description;
-    record_.read_as = theirs_.read_as;
-    record_.node_distance = theirs_.node_distance;
-    record_.curved_distance = theirs_.curved_distance;
-    record_.their_cells = mesh_.n_cells();
-  }
-
-  /// Their numbers, and how far their bodies penetrate.
-  void measure(const case_file::Config& config)
-  {
-    const contact::NitscheForm<dim> form = this->form();
-    const certify::EnergyBound values =
-        certify::no_energy_bound<dim>(form, theirs_.u, quantities_, "not yet judged");
-    for (std::size_t i = 0; i < quantities_.size(); ++i)
-    {
-      JudgedNumber& number = record_.numbers.emplace_back();
-      number.interval.name = values.quantities[i].name;
-      number.interval.reason = "not yet judged";
-      number.unit = record_.facts.unit_of(number.interval.name);
-      if (follows_from_displacement(quantities_[i].kind)) number.theirs = values.quantities[i].value;
-    }
-    for (const std::string& text : request_.numbers)
-    {
-      const auto [name, value] = parse_number(text);
-      const auto number =
-          std::ranges::find(record_.numbers, name, [](const JudgedNumber& n) { return n.interval.name; });
-      if (number == record_.numbers.end())
-        throw InputError({.file = "--number " + text},
-                         fmt::format("the case has no [[quantity]] \"{}\"", name),
-                         "the name of one of its quantities");
-      number->theirs = value;
-    }
-    if (!theirs_.stress.empty())
-    {
-      const std::vector<Point<dim>> forces = certify::boundary_forces<dim>(*space_, theirs_.stress);
-      for (std::size_t b = 0; b < forces.size(); ++b)
-        record_.forces.push_back({mesh_.boundary_names()[b], {forces[b].begin(), forces[b].end()}});
-    }
-    measure_tension(form);
-    if (config.history) return;  // gaps and slips of a path are not theirs
-    for (std::size_t k = 0; k < form.segments().size(); ++k)
-      for (const contact::ContactState<dim>& state : form.contact_states(theirs_.u, k))
-      {
-        if (record_.penetration && -state.gap <= *record_.penetration) continue;
-        record_.penetration = std::max(0.0, -state.gap);
-        record_.penetrated = problem_.boundary(form.segments()[k].slave.facet.tag).name;
-      }
-  }
-
-  void measure_tension(const contact::NitscheForm<dim>& form)
-  {
-    if (theirs_.stress.empty()) return;
-    std::vector<std::size_t> facets;
-    for (const contact::ContactSegment<dim>& segment : form.segments())
-      if (const auto cone = problem::cone(segment.contact->law); !cone.is_bilateral && !cone.holds_tension)
-        facets.push_back(segment.slave.number);
-    if (facets.empty()) return;
-    std::ranges::sort(facets);
-    record_.tension = certify::tension<dim>(*space_, theirs_.stress, facets);
-  }
-
-  void take_intervals(const certify::EnergyBound& energy)
-  {
-    for (JudgedNumber& number : record_.numbers)
-      if (const certify::QuantityInterval* interval = adapt::find_interval(energy, number.interval.name))
-        number.interval = *interval;
+    if (!request_.steps)
+      return level.t && request_.load_step && *request_.load_step != level.number ? nullptr
+                                                                                  : steps_.front().get();
+    if (next_ == targets_.size() || level.t != targets_[next_]) return nullptr;
+    return steps_[next_++].get();
   }
 
   const JudgeRequest& request_;
-  mesh::Mesh<dim> mesh_;  ///< the first one, which is theirs
-  problem::Problem<dim> problem_;
-  std::vector<problem::Quantity<dim>> quantities_;
-  certify::ForeignSolution<dim> theirs_{};
-  std::optional<fem::LagrangeSpace<dim>> space_{};
-  std::shared_ptr<const KeptLevel<dim>> judged_{};  ///< the last level that was judged on
-  JudgementRecord record_{};
+  JudgedCase<dim> case_;
+  std::vector<double> targets_{};                          ///< t of the load steps that are judged
+  std::vector<std::unique_ptr<JudgedStep<dim>>> steps_{};  ///< theirs
+  std::size_t next_ = 0;                                   ///< of them, in the pass of the run
 };
 
 ExitCode exit_code(const std::string& status)
@@ -237,22 +193,22 @@ template <int dim>
 ExitCode judge(const JudgeRequest& request, const case_file::Config& config, mesh::Mesh<dim> mesh)
 {
   Judge<dim> judge(request, config, std::move(mesh));
-  RunHooks hooks{.change = prepare_to_judge, .is_part = true};
+  RunHooks hooks{.change = prepare_to_judge, .pass = [&] { judge.accept(); }, .is_part = true};
   LoopHooks<dim>& of_dimension = hooks.of<dim>();
   of_dimension.level = [&](const auto& level, const io::LevelRecord& record) { judge(level, record); };
   if (!config.history)
-    of_dimension.stop = [&](const auto&)
-    { return judge.record().is_settled() ? "their solution is judged" : ""; };
+    of_dimension.stop = [&](const auto&) { return judge.is_settled() ? "their solution is judged" : ""; };
   const ExitCode code = run(request, {}, hooks);
   case_file::OutputConfig output = config.output;
   output.directory /= "judge";
   if (is_first_process() && std::filesystem::exists(output.directory))
   {
     judge.write(output);
-    print(judgement_text(judge.record(), output.directory.string()));
+    print(judge.text(output.directory.string()));
   }
-  return code == ExitCode::success || code == ExitCode::budget_used_up ? exit_code(judge.record().status())
-                                                                       : code;
+  return code == ExitCode::success || code == ExitCode::budget_used_up
+             ? exit_code(common_status(judge.records()))
+             : code;
 }
 
 }  // namespace

@@ -190,8 +190,14 @@ certify::Verdict go_along_path(const case_file::Config& config, std::unique_ptr<
                                     restart->points);
   const adapt::ReplayState<dim>* state = from ? &*from : nullptr;
   const adapt::Strategy<dim> strategy = make_strategy<dim>(config, stop, hooks);
-  const adapt::ReplayObserver<dim> observer =
+  adapt::ReplayObserver<dim> observer =
       report.path_observer(both(progress, hooks.step, path->grid().mesh.ranks()));
+  if (hooks.pass)
+    observer.complete = [&hooks, of_report = std::move(observer.complete)](const adapt::PassView<dim>& pass)
+    {
+      of_report(pass);
+      hooks.pass();
+    };
   const problem::Problem<dim>& problem = path->problem();
   const adapt::PathProgram& program = config.history->program;
   certify::Verdict verdict = config.history->refine == case_file::Refine::transfer

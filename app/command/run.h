@@ -53,7 +53,8 @@ struct RunHooks
 {
   adapt::StepObserver step{};
   std::function<void(case_file::Config&)> change{};  ///< the case, before anything is done with it
-  bool is_part = false;                              ///< of a larger command, which says how it ends
+  std::function<void()> pass{};  ///< called when the load steps so far are those of a complete pass
+  bool is_part = false;          ///< of a larger command, which says how it ends
   LoopHooks<2> plane{};
   LoopHooks<3> space{};
 

@@ -7,6 +7,7 @@
 
 #include "app/page/packed_array.h"
 #include "app/page/page_level.h"
+#include "app/result/judged_steps.h"
 #include "app/result/judgement.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
@@ -190,15 +191,16 @@ io::Json judged_surfaces(const contact::NitscheForm<dim>& form, const certify::F
 }
 
 void write_judgement_page(const PageTemplate& page, const std::filesystem::path& directory,
-                          const JudgementRecord& record, const io::Json& surfaces)
+                          std::span<const JudgementRecord> steps, const io::Json& surfaces)
 {
   const std::vector<std::string> files = {"judgement.json", "judged_cells.csv", "judged.vtu", "report.html"};
-  page.write(directory / "judgement.html", "judgement-data",
-             {{"judgement", judgement_object(record)},
-              {"program", io::program_json(io::build_facts())},
-              {"machine", machine_json()},
-              {"files", files_json(directory, files)},
-              {"surfaces", surfaces}});
+  io::Json data{{"judgement", judgement_object(steps[worst_step(steps)])},
+                {"program", io::program_json(io::build_facts())},
+                {"machine", machine_json()},
+                {"files", files_json(directory, files)},
+                {"surfaces", surfaces}};
+  if (steps.size() > 1) data["of_steps"] = judged_steps_object(steps);
+  page.write(directory / "judgement.html", "judgement-data", data);
 }
 
 template io::Json judged_surfaces(const contact::NitscheForm<2>&, const certify::ForeignSolution<2>&,

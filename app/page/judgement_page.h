@@ -25,8 +25,9 @@ template <int dim>
                                        const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
 /// Writes judgement.html into the directory, with links to the results there. `surfaces`: of
-/// judged_surfaces(), null where there is no bound. Throws WriteError when the file cannot be written.
+/// judged_surfaces(), null where there is no bound. Of several load steps the page has a table, and all of
+/// the worst. Throws WriteError when the file cannot be written.
 void write_judgement_page(const PageTemplate& page, const std::filesystem::path& directory,
-                          const JudgementRecord& record, const io::Json& surfaces);
+                          std::span<const JudgementRecord> steps, const io::Json& surfaces);
 
 }  // namespace tribound::app

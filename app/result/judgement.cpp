@@ -19,13 +19,6 @@ namespace tribound::app
 namespace
 {
 
-constexpr const char* judgement_schema = "1";
-
-std::string percent(double part)
-{
-  return std::isfinite(part) ? fmt::format("{:.4g} %", 100 * part) : "unknown";
-}
-
 /// "between 7.31 % and 7.9 %".
 std::string between(const certify::ErrorInterval& relative)
 {
@@ -120,6 +113,11 @@ io::Json json(const JudgedNumber& number)
 
 }  // namespace
 
+std::string percent(double part)
+{
+  return std::isfinite(part) ? fmt::format("{:.4g} %", 100 * part) : "unknown";
+}
+
 std::optional<certify::ErrorInterval> JudgedNumber::wrong_by() const
 {
   if (!theirs || !interval.reason.empty()) return std::nullopt;
@@ -165,6 +163,17 @@ std::string JudgementRecord::status() const
   return relative.upper <= *accept ? "accepted" : relative.lower > *accept ? "rejected" : "undecided";
 }
 
+std::string why_wide(const JudgementRecord& record)
+{
+  if (record.status() != "wide") return {};
+  const double part = record.judgement->bound / record.judgement->displacement.distance;
+  return fmt::format(": the bound is {} the distance, judge.sharpness = {:g}; {}",
+                     part <= 1 ? fmt::format("{:.3g} of", part) : std::string("larger than"),
+                     record.sharpness,
+                     record.load_step ? "a smaller adapt.tolerance makes it smaller"
+                                      : "give [adapt] more levels, unknowns or time");
+}
+
 std::string judgement_text(const JudgementRecord& r, const std::string& directory)
 {
   std::string text =
@@ -207,17 +216,12 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
     text += line("tension", fmt::format("of their stress in contact up to {:.4g}{} on {}", r.tension->largest,
                                         r.facts.behind(problem::UnitOf::stress),
                                         count(static_cast<long>(r.tension->n_facets), "facet", "facets")));
-  const std::string status = r.status();
-  std::string why;
-  if (status == "wide")
-  {
-    const double part = r.judgement->bound / r.judgement->displacement.distance;
-    why = fmt::format(
-        ": the bound is {} the distance, judge.sharpness = {:g}; give [adapt] more levels, unknowns or "
-        "time",
-        part <= 1 ? fmt::format("{:.3g} of", part) : std::string("larger than"), r.sharpness);
-  }
-  return text + paragraph("status", status + why) + line("results", directory);
+  return text + paragraph("status", r.status() + why_wide(r)) + line("results", directory);
+}
+
+std::optional<double> JudgementRecord::largest_error() const
+{
+  return judgement ? std::optional(judgement->displacement.relative->upper) : std::nullopt;
 }
 
 io::Json judgement_object(const JudgementRecord& r)
@@ -235,6 +239,7 @@ io::Json judgement_object(const JudgementRecord& r)
       {"node_distance", r.node_distance},
       {"curved_distance", r.curved_distance},
       {"load_step", r.load_step ? io::Json(*r.load_step) : io::Json(nullptr)},
+      {"t", io::number_or_null(r.t)},
       {"status", r.status()},
       {"sharpness", r.sharpness},
       {"accept", io::number_or_null(r.accept)},

@@ -16,6 +16,11 @@
 namespace tribound::app
 {
 
+inline constexpr const char* judgement_schema = "1";
+
+/// "7.31 %".
+[[nodiscard]] std::string percent(double part);
+
 /// A number of theirs beside the interval that contains the exact one.
 struct JudgedNumber
 {
@@ -57,6 +62,7 @@ struct JudgementRecord
   double sharpness = 0;
   long cells = 0;  ///< of the mesh that it was judged with
   std::optional<int> load_step{};
+  std::optional<double> t{};  ///< of the load step
   std::optional<double> accept{};
 
   /// Sets the forces of ours, and the imbalance.
@@ -68,8 +74,13 @@ struct JudgementRecord
   /// "judged", "wide" (the interval is wider than asked for) or "no bound"; with `accept` "accepted",
   /// "rejected" or "undecided".
   [[nodiscard]] std::string status() const;
+  /// The largest possible relative error of their displacement, which may be infinite; nothing without a
+  /// bound.
+  [[nodiscard]] std::optional<double> largest_error() const;
 };
 
+/// Of a status "wide", what is said behind it; else nothing.
+[[nodiscard]] std::string why_wide(const JudgementRecord& record);
 /// As printed; `directory`: of the files.
 [[nodiscard]] std::string judgement_text(const JudgementRecord& record, const std::string& directory);
 /// The fields of docs/output.md; what is unknown is null.

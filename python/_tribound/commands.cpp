@@ -128,10 +128,11 @@ int judge(const Document& document, const std::vector<std::string>& overrides, b
           const py::dict& options)
 {
   app::JudgeRequest what{request(document, overrides, quiet)};
-  what.solution = options["solution"].cast<std::string>();
+  what.solutions = options["solutions"].cast<std::vector<std::string>>();
   what.field = options["field"].cast<std::string>();
   what.stress = options["stress"].cast<std::string>();
   what.interpolate = options["interpolate"].cast<bool>();
+  what.steps = options["steps"].cast<bool>();
   what.step = options["step"].cast<std::optional<int>>();
   what.load_step = options["load_step"].cast<std::optional<int>>();
   what.numbers = options["numbers"].cast<std::vector<std::string>>();
