@@ -110,8 +110,9 @@ class Judge
       const mesh::ImportedSolution solution = solution_of(request, theirs[i]);
       for (const std::string& text : solution.notes)
         if (!request.quiet && is_first_process()) note(text);
+      const std::optional<double> t = targets_.empty() ? std::nullopt : std::optional(targets_[i]);
       steps_.push_back(
-          std::make_unique<JudgedStep<dim>>(case_, request, theirs[i].file, solution, numbers, i));
+          std::make_unique<JudgedStep<dim>>(case_, request, theirs[i].file, solution, numbers, i, t));
     }
   }
 

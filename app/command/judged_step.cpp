@@ -55,7 +55,8 @@ JudgedCase<dim>::JudgedCase(const case_file::Config& config, mesh::Mesh<dim> fir
 template <int dim>
 JudgedStep<dim>::JudgedStep(const JudgedCase<dim>& judged_case, const JudgeRequest& request,
                             const std::string& file, const mesh::ImportedSolution& solution,
-                            std::span<const GivenNumber> numbers, std::size_t number)
+                            std::span<const GivenNumber> numbers, std::size_t number,
+                            const std::optional<double>& t)
     : case_(judged_case),
       theirs_(read<dim>(request, solution, case_.mesh)),
       space_(case_.mesh, theirs_.degree),
@@ -71,6 +72,7 @@ JudgedStep<dim>::JudgedStep(const JudgedCase<dim>& judged_case, const JudgeReque
   record.node_distance = theirs_.node_distance;
   record.curved_distance = theirs_.curved_distance;
   record.their_cells = case_.mesh.n_cells();
+  record.t = t;
   record.reason = not_reached;
   for (const GivenNumber& given : numbers)
   {

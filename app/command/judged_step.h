@@ -52,11 +52,12 @@ class JudgedStep
  public:
   using Level = std::shared_ptr<const KeptLevel<dim>>;
 
-  /// `number`: its place in `numbers`. Keeps a reference to the case. Throws InputError where the solution is
+  /// `number`: its place in `numbers`; `t`: of its load step, where it is known before the run. Keeps a
+  /// reference to the case. Throws InputError where the solution is
   /// on another mesh, and for a number without a quantity.
   JudgedStep(const JudgedCase<dim>& judged_case, const JudgeRequest& request, const std::string& file,
-             const mesh::ImportedSolution& solution, std::span<const GivenNumber> numbers,
-             std::size_t number);
+             const mesh::ImportedSolution& solution, std::span<const GivenNumber> numbers, std::size_t number,
+             const std::optional<double>& t);
 
   /// Compares with the level, which is kept where it has a bound.
   void judge(const Level& level, const io::LevelRecord& record);

@@ -38,7 +38,7 @@ _tribound()
         check) candidates="--set --quiet --json --help" ;;
         run) candidates="--set --quiet --restart --help" ;;
         study) candidates="--set --quiet --help" ;;
-        judge) candidates="--set --quiet --solution --interpolate --field --stress --step --load-step --number --accept --help" ;;
+        judge) candidates="--set --quiet --solution --interpolate --field --stress --steps --step --load-step --number --accept --help" ;;
         sweep) candidates="--set --table --jobs --resume --help" ;;
         verify) candidates="--set --quiet --refinements --help" ;;
       esac ;;

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +16,14 @@ from tribound.run import AnyCase, Input, Place
 from tribound.session import Work
 
 Interval = tuple[float, float]
+Solution = str | os.PathLike[str] | tuple[ArrayLike, ...]
 
 
 class Judgement(dict[str, Any]):
-    """judgement.json, see docs/output.md; intervals as pairs, of which the upper end may be infinite."""
+    """judgement.json, see docs/output.md; intervals as pairs, of which the upper end may be infinite.
+
+    Of all load steps: intervals are those of the worst.
+    """
 
     def __init__(self, place: Place, content: Mapping[str, Any]) -> None:
         super().__init__(content)
@@ -31,44 +35,50 @@ class Judgement(dict[str, Any]):
         return str(self["status"])
 
     @property
+    def steps(self) -> list["Judgement"]:
+        """Of every load step; with steps=True, else empty."""
+        return [Judgement(self._place, step) for step in self.get("steps", [])]
+
+    @property
     def relative(self) -> Interval | None:
         """The relative error of their displacement in the energy norm; None where there is no bound."""
-        return _interval(self["displacement"], "relative")
+        return self._interval("displacement", "relative")
 
     @property
     def stress(self) -> Interval | None:
         """That of their stress; None where it was not read, or has no bound."""
-        return _interval(self["stress"], "relative")
+        return self._interval("stress", "relative")
 
     @property
     def error(self) -> Interval | None:
         """The error of their displacement in the energy norm."""
-        return _interval(self["displacement"], "error")
+        return self._interval("displacement", "error")
 
     @property
     def directory(self) -> Path:
         """The files of the judgement, and of the run behind it."""
         return self._place.path / "judge"
 
-
-def _interval(field: Mapping[str, Any] | None, name: str) -> Interval | None:
-    if field is None or field[name] is None:
-        return None
-    lower, upper = field[name]
-    return lower, np.inf if upper is None else upper
+    def _interval(self, field: str, name: str) -> Interval | None:
+        judged = self["steps"][self["worst"] - 1] if "steps" in self else self
+        if judged[field] is None or judged[field][name] is None:
+            return None
+        lower, upper = judged[field][name]
+        return lower, np.inf if upper is None else upper
 
 
 def judge(
     case: AnyCase,
-    solution: str | os.PathLike[str] | tuple[ArrayLike, ...],
+    solution: Solution | Sequence[Solution],
     mesh: Mesh | None = None,
     *,
     field: str = "",
     stress: str = "",
     interpolate: bool = False,
+    steps: bool = False,
     step: int | None = None,
     load_step: int | None = None,
-    numbers: Mapping[str, float] | None = None,
+    numbers: Mapping[str, float | Sequence[float]] | None = None,
     accept: float | None = None,
     set: Mapping[str, Any] | None = None,
     directory: str | os.PathLike[str] | None = None,
@@ -78,27 +88,35 @@ def judge(
 
     solution: a file of docs/judge.md, or arrays: points (n, d), displacements (n, d) and perhaps stresses
     (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. interpolate: a file on
-    another mesh is judged by its interpolant. numbers: what was
-    computed for quantities of the case. accept: the largest relative error.
+    another mesh is judged by its interpolant. steps: every load step of the case is judged; solution may be a
+    list then, one for each. numbers: what was computed for quantities of the case, with steps a list each.
+    accept: the largest relative error.
     """
     place = Place(directory)
     given = Input(case, mesh, set, place)
-    file = Path(solution) if isinstance(solution, str | os.PathLike) else _write(place.path, *solution)
+    solutions: Sequence[Any] = solution if isinstance(solution, list) else [solution]
     options = {
-        "solution": str(file),
+        "solutions": [_file(place.path, number, one) for number, one in enumerate(solutions)],
         "field": field,
         "stress": stress,
         "interpolate": interpolate,
+        "steps": steps,
         "step": step,
         "load_step": load_step,
-        "numbers": [f"{name}={float(value)!r}" for name, value in (numbers or {}).items()],
+        "numbers": [f"{name}={','.join(map(repr, np.atleast_1d(value).tolist()))}" for name, value in (numbers or {}).items()],
         "accept": accept,
     }
     Work(lambda _: _tribound.judge(given.document, given.overrides, not verbose, options), verbose).result()
     return Judgement(place, json.loads((place.path / "judge/judgement.json").read_text()))
 
 
-def _write(directory: Path, points: ArrayLike, displacement: ArrayLike, stress: ArrayLike | None = None) -> Path:
+def _file(directory: Path, number: int, solution: Solution) -> str:
+    if isinstance(solution, str | os.PathLike):
+        return os.fspath(solution)
+    return str(_write(directory / f"solution{number or ''}.csv", *solution))
+
+
+def _write(file: Path, points: ArrayLike, displacement: ArrayLike, stress: ArrayLike | None = None) -> Path:
     """The arrays as a table."""
     x, u = np.asarray(points, dtype=float), np.asarray(displacement, dtype=float)
     if x.ndim != 2 or x.shape[1] not in (2, 3) or u.shape != x.shape:
@@ -113,6 +131,5 @@ def _write(directory: Path, points: ArrayLike, displacement: ArrayLike, stress: 
             raise InputError.at("solution", f"has stresses of shape {s.shape}", "(n, 3) or (n, 6)", "judge")
         names += ["s" + component for component in components[s.shape[1]]]
         columns.append(s)
-    file = directory / "solution.csv"
     np.savetxt(file, np.column_stack(columns), delimiter=",", header=",".join(names), comments="", fmt="%.17g")
     return file

@@ -5,6 +5,7 @@ import { definitions, filesSection, timesAndMachine } from "./facts.js";
 import { errorsSection, judgedNumbersSection } from "./judgement_charts.js";
 import { comparisonSection } from "./judgement_fields.js";
 import { coreText, halvingText, judgementHeader, placeText } from "./judgement_words.js";
+import { stepsSection } from "./judgement_steps.js";
 import { judgementFormula } from "./math.js";
 import { headed, measured, nameUnits, unit } from "./units.js";
 
@@ -57,10 +58,11 @@ function readSection(judgement) {
     ["Factor", factor ? `times ${number(factor, 5)} their displacement is the nearest to ours in the energy norm` : null]]), rigidTable(judgement));
 }
 
-export function judgementPage({ judgement, program, machine, files, surfaces }) {
+/** `of_steps`: of all load steps, where these were judged; `judgement` is then that of the worst. */
+export function judgementPage({ judgement, of_steps: ofSteps, program, machine, files, surfaces }) {
   nameUnits(judgement.units);
   const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
-  const sections = [fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
+  const sections = [stepsSection(ofSteps), fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
-  return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, program, machine }), sections, start: fields.start, machine, program };
+  return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, ofSteps, program, machine }), sections, start: fields.start, machine, program };
 }

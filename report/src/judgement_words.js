@@ -56,7 +56,7 @@ function sentence(judgement) {
   const { bound, distance } = displacement;
   const size = bound > distance ? "larger than" : `${number(bound / distance, 3)} of`;
   return `${guaranteed} The bound of ours is ${size} the distance between both, `
-    + `${number(judgement.sharpness)} was asked for: give [adapt] more levels, unknowns or time.`;
+    + `${number(judgement.sharpness)} was asked for: ${judgement.load_step === null ? "give [adapt] more levels, unknowns or time" : "a smaller adapt.tolerance makes it smaller"}.`;
 }
 
 function penetrationText({ penetration, penetrated }) {
@@ -75,9 +75,13 @@ function balanceText({ imbalance }) {
   return imbalance === null ? null : `The forces of their stress miss the loads by ${percent(imbalance, 4)}.`;
 }
 
-function verdictBody(judgement) {
+function stepText({ steps, worst }) {
+  return `${plural(steps.length, "load step was", "load steps were")} judged. Step ${worst}, at t = ${number(steps[worst - 1].t)}, may have the largest error:`;
+}
+
+function verdictBody(judgement, ofSteps) {
   const { displacement, stress } = judgement;
-  return [element("p", {}, sentence(judgement)), definitions([
+  return [ofSteps && element("p", {}, stepText(ofSteps)), element("p", {}, sentence(judgement)), definitions([
     ["Displacement", displacement && errorText(displacement)],
     ["Stress", stress && errorText(stress)],
     ["Where", displacement && coreText(displacement.core)],
@@ -103,10 +107,10 @@ function figures(judgement) {
     penetration > 0 ? figure(number(penetration, 3), "largest penetration", unit("length")) : null].filter(Boolean));
 }
 
-export function judgementHeader({ judgement, program, machine }) {
-  const verdict = verdicts[judgement.status];
+export function judgementHeader({ judgement, ofSteps, program, machine }) {
+  const verdict = verdicts[(ofSteps ?? judgement).status];
   const { file, description } = judgement.solution;
   return pageHeader({ program, machine, title: judgement.title, file: judgement.file,
-    kind: `judgement of ${file} (${description}), ${kindOf(judgement)}`, verdict: { ...verdict, body: verdictBody(judgement) },
+    kind: `judgement of ${file} (${description}), ${kindOf(judgement)}`, verdict: { ...verdict, body: verdictBody(judgement, ofSteps) },
     warnings: doubtBox(judgement), figures: figures(judgement) });
 }

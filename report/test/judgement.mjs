@@ -8,7 +8,7 @@ import { changes, saved, slide } from "./fields.mjs";
 
 const titles = { judged: "Judged", wide: "Judged, within a wide interval" };
 
-/** The directory of the judgement of what the program itself finds with degree 1 on the first mesh. */
+/** The directory of the judgement of what the program itself finds with degree 1 on the first mesh; with load steps, of all. */
 export function judge(program, directory, text) {
   rmSync(directory, { recursive: true, force: true });
   mkdirSync(directory, { recursive: true });
@@ -16,7 +16,8 @@ export function judge(program, directory, text) {
   const tribound = (...list) => spawnSync(program, [...list, "--quiet"], { cwd: directory, encoding: "utf8" });
   const theirs = tribound("run", "case.toml", "--set", "degree=1", "--set", "adapt.max_levels=0", "--set", 'output.directory="theirs"');
   assert([0, 3].includes(theirs.status), theirs.stderr);
-  const judged = tribound("judge", "case.toml", "--solution", "theirs/level_000.vtu");
+  const solution = text.includes("[history]") ? ["theirs/series.pvd", "--steps"] : ["theirs/level_000.vtu"];
+  const judged = tribound("judge", "case.toml", "--solution", ...solution);
   assert([0, 3].includes(judged.status), judged.stderr);
   return `${directory}/out/case/judge`;
 }
@@ -90,6 +91,26 @@ export async function useJudgement(browser, directory, picture) {
   await page.pdf({ path: `${picture}.pdf`, format: "A4", printBackground: true });
   assert.equal(await page.locator("svg.print-only image").count(), 3);
   await checkWithoutBound(browser, directory);
+  assert.deepEqual(complaints, []);
+  await page.close();
+  return seconds;
+}
+
+/** The page of several load steps: all of them in a table, and the worst as a single one. */
+export async function useJudgedSteps(browser, directory, picture) {
+  const { steps, worst, status } = JSON.parse(readFileSync(`${directory}/judgement.json`, "utf8"));
+  const { page, complaints, seconds } = await openPage(browser, pathToFileURL(`${directory}/judgement.html`).href);
+  await page.screenshot({ path: `${picture}.png`, fullPage: true });
+  const verdict = await page.locator(".verdict:not(.warnings)").textContent();
+  assert(verdict.includes(titles[status]), verdict);
+  assert(verdict.includes(`${steps.length} load steps were judged. Step ${worst}, at t = ${steps[worst - 1].t}`), verdict);
+  const rows = await page.locator("#steps tbody tr").allTextContents();
+  assert.equal(rows.length, steps.length);
+  rows.forEach((row, i) => {
+    for (const end of steps[i].displacement.relative) assert(row.includes(`${shown(100 * end, 4)}\u00a0%`), row);
+  });
+  assert((await page.locator("#read").textContent()).includes(steps[worst - 1].solution.description));
+  for (let i = 0; i < 3; ++i) assert(await colours(page, `#fields canvas >> nth=${i}`) > 60, `picture ${i} is blank`);
   assert.deepEqual(complaints, []);
   await page.close();
   return seconds;

@@ -8,7 +8,7 @@ import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node
 import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
 import { saved, useBodies, useFields, usePlans } from "./fields.mjs";
-import { judge, useJudgement } from "./judgement.mjs";
+import { judge, useJudgedSteps, useJudgement } from "./judgement.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
 
@@ -477,6 +477,9 @@ async function checkJudgements(browser) {
       await plain.close();
     }
   }
+  const steps = cases.block.text.replace("traction = [0, -0.1]", 'traction = [0, "-0.1*t"]').replace("[certify]", "[history]\nsteps = [0.5, 1]\n[certify]");
+  const directory = judge(program, `${results}/judged_steps`, steps);
+  report("judged steps", directory, await useJudgedSteps(browser, directory, `${results}/judged_steps`), "judgement.html");
 }
 
 function report(name, directory, seconds, file = "report.html") {

@@ -40,12 +40,15 @@ class MedFile
   {
     H5Gclose(H5Gcreate2(file_, name.c_str(), links_, H5P_DEFAULT, H5P_DEFAULT));
   }
-  void attribute(const std::string& object, const std::string& name, int value) const
+  /// A number: int or double.
+  template <class T>
+  void attribute(const std::string& object, const std::string& name, T value) const
   {
+    const hid_t type = std::is_same_v<T, int> ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE;
     const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t id = H5Acreate_by_name(file_, object.c_str(), name.c_str(), H5T_NATIVE_INT, space,
-                                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    H5Awrite(id, H5T_NATIVE_INT, &value);
+    const hid_t id = H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
+                                       H5P_DEFAULT, H5P_DEFAULT);
+    H5Awrite(id, type, &value);
     H5Aclose(id);
     H5Sclose(space);
   }

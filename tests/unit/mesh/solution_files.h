@@ -149,4 +149,15 @@ inline void expect_field(const mesh::ImportedSolution& solution, std::size_t n_n
   EXPECT_EQ(misplaced_nodes(solution.mesh), "");
 }
 
+inline void expect_steps(const mesh::ImportedSolution& solution,
+                         const std::vector<mesh::SolutionStep>& expected)
+{
+  ASSERT_EQ(solution.steps.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    EXPECT_EQ(solution.steps[i].number, expected[i].number);
+    EXPECT_EQ(solution.steps[i].t, expected[i].t);
+  }
+}
+
 }  // namespace tribound::testing_mesh

@@ -34,7 +34,11 @@ void write_field(const MedFile& file, const std::string& name, const std::vector
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t v = first; v < end; ++v) values.push_back(at(v, i));
   file.array(time + "/NOE/" + profile + "/CO", H5T_NATIVE_DOUBLE, values.size(), values.data());
-  if (first == 0) file.attribute(time, "NDT", step);
+  if (first == 0)
+  {
+    file.attribute(time, "NDT", step);
+    file.attribute(time, "PDT", 0.25 * step);
+  }
   if (step > 1) return;
   std::string padded;
   for (const std::string& component : names) padded += fmt::format("{:16}", component);
@@ -76,6 +80,7 @@ TEST(SolutionOfMed, FieldsHaveNamesTimesAndProfiles)
   testing_mesh::expect_field(solution, mesh.nodes.size());
   EXPECT_EQ(solution.description,
             "MED field \"reslin__DEPL\", step 2, stress \"reslin__SIEF_NOEU\", tetrahedron of 10 nodes");
+  testing_mesh::expect_steps(solution, {{1, 0.25}, {2, 0.5}});
   const ImportedSolution first = read_solution(directory / "theirs.med", {.step = 1});
   for (std::size_t v = 0; v < mesh.nodes.size(); ++v)
     EXPECT_LT((first.displacement[v] - 2 * displacement_at(mesh.nodes[v])).norm(), 1e-12);

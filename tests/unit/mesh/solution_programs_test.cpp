@@ -37,6 +37,7 @@ TEST(SolutionOfPrograms, ViewsOfGmshAreOfNodesOrOfElements)
     const ImportedSolution first = read_solution(nodal, {.step = 0});
     EXPECT_LT((first.displacement[0] - 2 * displacement_at(first.mesh.nodes[0])).norm(), 1e-12);
     EXPECT_TRUE(first.stress.empty());
+    testing_mesh::expect_steps(first, {{0, 0.5}, {1, 1.5}});
 
     const auto of_elements = directory.write("a.msh", text + testing_mesh::gmsh_data_of_elements(mesh)).path;
     const ImportedSolution solution = read_solution(of_elements, {});
@@ -99,6 +100,7 @@ TEST(SolutionOfPrograms, CalculixHasStepsAndBlocks)
   const ImportedSolution solution = read_solution(file, {});
   expect_field(solution, mesh.nodes.size(), six_digits);
   EXPECT_EQ(solution.description, "CalculiX results, step 2 (t = 2), C3D10, C3D8");
+  testing_mesh::expect_steps(solution, {{1, 1}, {2, 2}});
   const ImportedSolution first = read_solution(file, {.step = 1});
   for (std::size_t v = 0; v < mesh.nodes.size(); ++v)
     EXPECT_LT((first.displacement[v] - 2 * displacement_at(first.mesh.nodes[v])).norm(), six_digits);

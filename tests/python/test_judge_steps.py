@@ -1,0 +1,229 @@
+"""Judgements of all load steps at once, against separate ones and against runs of the steps alone."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tribound as tb
+
+from small_cases import block
+
+PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
+
+
+def pressed(**contact: Any) -> dict[str, Any]:
+    """A block that is pressed down and pushed, in two steps."""
+    quantities = [{"name": "work", "kind": "load_work"}, {"name": "floor", "kind": "contact_force", "direction": [0, 1]}]
+    case = block(2, 2, history={"steps": [0.5, 1.0]}, adapt={"tolerance": 0.03}, quantity=quantities)
+    case["boundary"]["bottom"]["contact"] = {"gap": 0, **contact}
+    case["boundary"]["top"] = {"traction": [0, "-0.1*t"]}
+    case["boundary"]["right"] = {"traction": ["0.06*t*t", "0.04*t"]}
+    return case
+
+
+LAWS: tuple[dict[str, Any], ...] = ({"friction": "none"}, {"friction": "tresca", "threshold": 0.03})
+COARSE = {"degree": 1, "adapt.max_levels": 0}
+
+
+def arrays(level: tb.Level) -> tuple[Any, ...]:
+    """Points, displacements, and stresses averaged at the nodes."""
+    stress, count = np.zeros((len(level.nodes), 6)), np.zeros(len(level.nodes))
+    np.add.at(stress, level.cell_nodes, level.stress)
+    np.add.at(count, level.cell_nodes, 1)
+    return level.nodes, level.displacement, stress / count[:, None]
+
+
+def work_of_loads(level: tb.Level, t: float) -> float:
+    """Of the tractions of pressed() on straight edges of degree 1, by the trapezoidal rule."""
+    total = 0.0
+    for axis, place, traction in ((1, 1.0, (0, -0.1 * t)), (0, 2.0, (0.06 * t * t, 0.04 * t))):
+        on_edge = np.flatnonzero(np.isclose(level.nodes[:, axis], place))
+        on_edge = on_edge[np.argsort(level.nodes[on_edge, 1 - axis])]
+        x = level.nodes[on_edge, 1 - axis]
+        power = level.displacement[on_edge] @ np.array(traction)
+        total += float(np.sum((power[1:] + power[:-1]) / 2 * np.diff(x)))
+    return total
+
+
+class Steps(unittest.TestCase):
+    def test_they_are_what_separate_judgements_say(self) -> None:
+        for law in LAWS:
+            case = pressed(**law)
+            theirs = [arrays(level) for level in tb.run(case, keep_levels=True, set=COARSE).levels]
+            numbers = {"floor": [0.03, 0.06]}
+            together = tb.judge(case, theirs, steps=True, numbers=numbers)
+            self.assertEqual(len(together.steps), 2)
+            for number, step in enumerate(together.steps, 1):
+                alone = tb.judge(case, theirs[number - 1], load_step=number, numbers={"floor": numbers["floor"][number - 1]})
+                with self.subTest(law=law, number=number):
+                    self.assertEqual((step["load_step"], step["t"]), (number, [0.5, 1.0][number - 1]))
+                    different = {key for key in alone if alone[key] != step[key]}
+                    self.assertLessEqual(different, {"solution"})
+                    self.assertEqual(step["solution"]["description"], alone["solution"]["description"])
+                    self.assertIn(step.status, ("judged", "wide"))
+            relative = [step.relative or (0.0, 0.0) for step in together.steps]
+            self.assertEqual(together["worst"], 1 + int(np.argmax([upper for _, upper in relative])))
+            self.assertEqual(together.relative, relative[together["worst"] - 1])
+
+    def test_intervals_hold_the_numbers_of_a_finer_run(self) -> None:
+        """Loads, and so their work, are those of the step."""
+        case = pressed(**LAWS[1])
+        levels = tb.run(case, keep_levels=True, set=COARSE).levels
+        judged = tb.judge(case, [arrays(level)[:2] for level in levels], steps=True)
+        finest = tb.run(case, set={"degree": 3, "adapt.tolerance": 0.005, "certify.energy": "every"}, keep_levels=True)
+        for step, level, record in zip(judged.steps, levels, finest.certificate["steps"]):
+            work, floor = step["quantities"]
+            self.assertAlmostEqual(work["theirs"], work_of_loads(level, step["t"]), places=12)
+            self.assertIsNone(floor["theirs"])
+            for judged_number, ours in zip((work, floor), record["quantities"]):
+                self.assertEqual(judged_number["name"], ours["name"])
+                self.assertLessEqual(judged_number["lower"], ours["upper"])
+                self.assertLessEqual(ours["lower"], judged_number["upper"])
+
+    def test_thresholds_are_those_of_the_worst(self) -> None:
+        case = pressed(**LAWS[0])
+        good = [arrays(level)[:2] for level in tb.run(case, keep_levels=True, set={"adapt.max_levels": 0}).levels]
+        bad = [good[0], (good[1][0], 2 * good[1][1])]
+        for theirs, status in ((good, "accepted"), (bad, "rejected")):
+            judged = tb.judge(case, theirs, steps=True, accept=0.5)
+            self.assertEqual(judged.status, status)
+            self.assertEqual(judged.steps[0].status, "accepted")
+            self.assertEqual(judged.steps[1].status, status)
+        self.assertEqual(judged["worst"], 2)
+
+    def test_without_a_bound_statics_count(self) -> None:
+        case = pressed(friction="none")
+        case["boundary"]["bottom"] = {"interface": {"law": "joint", "tensile_strength": 10, "fracture_energy": 1000}}
+        del case["quantity"]
+        theirs = [arrays(level) for level in tb.run(case, keep_levels=True, set=COARSE).levels]
+        judged = tb.judge(case, theirs, steps=True, set={"adapt.tolerance": 0.2})
+        self.assertEqual(judged.status, "no bound")
+        self.assertIsNone(judged.relative)
+        for step in judged.steps:
+            self.assertIn("bond", step["reason"])
+            self.assertGreater(step["imbalance"], 0)
+            (pushed,) = (force for force in step["forces"] if force["boundary"] == "right")
+            t = step["t"]
+            np.testing.assert_allclose(pushed["ours"], [0.06 * t * t, 0.04 * t], rtol=1e-9)
+
+    def test_a_path_that_ends_early_or_needs_steps_between(self) -> None:
+        case = pressed(**LAWS[1])
+        case["history"]["steps"] = [0.5, 1.0, 40.0]
+        case["newton"] = {"max_steps": 3}
+        theirs = [arrays(level)[:2] for level in tb.run(pressed(**LAWS[1]), keep_levels=True, set=COARSE).levels]
+        with tempfile.TemporaryDirectory() as directory:
+            try:
+                tb.judge(case, [*theirs, theirs[1]], steps=True, directory=directory)
+            except tb.SolveError:
+                pass
+            steps = json.loads((Path(directory) / "judge/judgement.json").read_text())["steps"]
+        for step in steps:
+            if step["displacement"] is None:
+                self.assertTrue(step["reason"])
+            else:
+                self.assertEqual(step["t"], case["history"]["steps"][steps.index(step)])
+
+
+class Pairs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.case = pressed(**LAWS[0])
+        cls.directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.directory.cleanup)
+        cls.folder = Path(cls.directory.name)
+        cls.result = tb.run(cls.case, keep_levels=True, set=COARSE, directory=cls.folder / "theirs")
+        cls.theirs = [arrays(level)[:2] for level in cls.result.levels]
+
+    def test_a_series_of_paraview(self) -> None:
+        series = self.folder / "theirs/series.pvd"
+        judged = tb.judge(self.case, series, steps=True)
+        table = tb.judge(self.case, self.theirs, steps=True)
+        last = tb.judge(self.case, series)
+        for step, other in zip(judged.steps, table.steps):
+            assert step.error and other.error
+            np.testing.assert_allclose(step.error, other.error, rtol=1e-9)
+            self.assertIsNotNone(step.stress)
+        self.assertIn("step 2", judged.steps[1]["solution"]["description"])
+        self.assertEqual(dict(last), dict(judged.steps[1]))
+
+    def test_times_choose_among_more_steps(self) -> None:
+        """The series has the states before the first load step and between both, too."""
+        text = "".join(
+            f'<DataSet timestep="{t}" file="theirs/step_00{number}.vtu"/>' for t, number in ((0, 2), (0.5, 1), (0.75, 1), (1, 2))
+        )
+        series = self.folder / "more.pvd"
+        series.write_text(f'<VTKFile type="Collection"><Collection>{text}</Collection></VTKFile>')
+        more = tb.judge(self.case, series, steps=True)
+        two = tb.judge(self.case, self.folder / "theirs/series.pvd", steps=True)
+        for step, other in zip(more.steps, two.steps):
+            self.assertEqual(step["displacement"], other["displacement"])
+        series.write_text(series.read_text().replace('"1"', '"2"').replace('"0.75"', '"1.5"'))
+        with self.assertRaisesRegex(tb.InputError, r"4 steps \(t = 0, 0.5, 1.5, 2\), the case 2 load steps \(t = 0.5, 1\)"):
+            tb.judge(self.case, series, steps=True)
+
+    def test_what_does_not_pair_is_refused(self) -> None:
+        alone = block(2, 2)
+        for case, theirs, options, words in (
+            (self.case, self.theirs[:1], {"steps": True}, "has 1 step, the case 2 load steps"),
+            (self.case, [*self.theirs, self.theirs[0]], {"steps": True}, "has 3 steps, the case 2 load steps"),
+            (self.case, self.theirs, {}, "is a second solution"),
+            (self.case, self.theirs, {"steps": True, "load_step": 1}, "either --steps"),
+            (self.case, self.theirs, {"steps": True, "numbers": {"floor": 1}}, "has 1 value for 2 steps"),
+            (alone, self.theirs, {"steps": True}, "has no load steps"),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(tb.InputError, words):
+                tb.judge(case, theirs, **options)
+
+    def test_a_node_without_a_value_is_named_with_its_file(self) -> None:
+        points, displacement = self.theirs[1]
+        broken = displacement.copy()
+        broken[3, 1] = np.nan
+        with self.assertRaisesRegex(tb.InputError, "solution1.csv: has no displacement at node"):
+            tb.judge(self.case, [self.theirs[0], (points, broken)], steps=True)
+
+
+@unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "the program is not named, or mpirun is not installed")
+class Program(unittest.TestCase):
+    def judge(self, folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
+        start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        command = [*start, str(PROGRAM), "judge", "case.toml", "--solution", "theirs/series.pvd", "--steps", "-q", *options]
+        return subprocess.run(command, cwd=folder, env=os.environ, capture_output=True, text=True)  # without what MPI has set
+
+    def test_ranks_and_files(self) -> None:
+        with tempfile.TemporaryDirectory() as directory:
+            folder = Path(directory)
+            case = pressed(**LAWS[1])
+            tb.run(case, set=COARSE, directory=folder / "theirs")
+            shutil.copy(folder / "theirs/case.toml", folder / "case.toml")
+            sets = ("--set", "degree=2", "--set", "adapt.max_levels=12", "--set", "adapt.tolerance=0.02")
+            one = self.judge(folder, *sets, "--set", 'output.directory="one"')
+            two = self.judge(folder, *sets, "--set", 'output.directory="two"', ranks=2)
+            self.assertEqual((one.returncode, two.returncode), (0, 0), one.stdout + two.stderr)
+            table = [line.split() for line in one.stdout.splitlines()[1:4]]
+            self.assertEqual(table[0][:4], ["errors", "step", "t", "displacement"])
+            self.assertEqual([row[0] for row in table[1:]], ["1", "2"])
+            self.assertEqual([row[1] for row in table[1:]], ["0.5", "1"])
+            judged = [json.loads((folder / name / "judge/judgement.json").read_text()) for name in ("one", "two")]
+            for a, b in zip(judged[0]["steps"], judged[1]["steps"]):
+                for field in ("displacement", "stress"):
+                    np.testing.assert_allclose(a[field]["error"], b[field]["error"], rtol=1e-8)
+            for number in ("001", "002"):
+                for name in ("judged.vtu", "judged_cells.csv"):
+                    self.assertTrue((folder / "two/judge/judged_steps" / number / name).exists())
+            self.assertEqual(self.judge(folder, *sets, "--accept", "0.001").returncode, 4)
+            ended = subprocess.run(
+                [str(PROGRAM), "run", "case.toml", "-q", "--set", 'output.directory="two/judge"'],
+                cwd=folder, capture_output=True, text=True,
+            )
+            self.assertIn(ended.returncode, (0, 3), ended.stderr)
+            self.assertFalse((folder / "two/judge/judged_steps").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
