@@ -59,11 +59,9 @@ std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& con
   return directory;
 }
 
-std::filesystem::path make_step_directory(const std::filesystem::path& directory, std::size_t step)
+std::filesystem::path judged_step_directory(std::size_t step)
 {
-  std::filesystem::path result = directory / judged_steps / fmt::format("{:03}", step + 1);
-  io::make_series_directory(result);
-  return result;
+  return std::filesystem::path(judged_steps) / fmt::format("{:03}", step + 1);
 }
 
 std::string effective_file_name(const case_file::Config& config)

@@ -22,9 +22,8 @@ void require_mesh_elsewhere(const case_file::Config& config);
 [[nodiscard]] std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& config,
                                                                   bool keeps_results);
 
-/// Makes the directory of a load step that was judged; steps are counted from 0. Throws WriteError.
-[[nodiscard]] std::filesystem::path make_step_directory(const std::filesystem::path& directory,
-                                                        std::size_t step);
+/// The directory of a load step that was judged, below that of the judgement; steps are counted from 0.
+[[nodiscard]] std::filesystem::path judged_step_directory(std::size_t step);
 
 /// case.toml, or case_effective.toml where the former is the input file and has other contents: it is not
 /// replaced.

@@ -17,6 +17,7 @@
 #include "app/result/judged_steps.h"
 #include "app/result/judgement.h"
 #include "app/shared_file.h"
+#include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
 
@@ -101,8 +102,8 @@ class Judge
   Judge(const JudgeRequest& request, const case_file::Config& config, mesh::Mesh<dim> mesh)
       : request_(request), case_(config, std::move(mesh))
   {
-    if (request.steps) targets_ = config.history->program.targets;
     std::vector<TheirStep> theirs = chosen_steps(request, config);
+    if (request.steps) targets_ = config.history->program.targets;
     std::vector<GivenNumber> numbers;
     for (const std::string& text : request.numbers) numbers.push_back(parse_number(text, theirs.size()));
     for (std::size_t i = 0; i < theirs.size(); ++i)
@@ -151,8 +152,12 @@ class Judge
         request_.steps ? judged_steps_object(records) : judgement_object(records.front());
     io::write_file(directory / "judgement.json", io::json_text(judgement));
     for (std::size_t i = 0; i < steps_.size(); ++i)
-      if (records[i].judgement)
-        steps_[i]->write_fields(request_.steps ? make_step_directory(directory, i) : directory);
+    {
+      if (!records[i].judgement) continue;
+      const std::filesystem::path own = request_.steps ? directory / judged_step_directory(i) : directory;
+      io::make_series_directory(own);
+      steps_[i]->write_fields(own);
+    }
     const PageTemplate page(output.report ? find_shared_file("report.html") : std::filesystem::path{});
     if (!page.empty())
       write_judgement_page(page, directory, records, steps_[worst_step(records)]->surfaces());

@@ -163,6 +163,7 @@ void JudgedStep<dim>::judge(const Level& kept, const io::LevelRecord& of_level)
   if (energy) take_intervals(*energy);
   if (!record.reason.empty()) return;
   record.target = io::words_of(energy->target);
+  if (level.t) record.target += ", of a load step after the computed slip of those before it";
   // The problem of the level has the initial stress of its load step.
   record.judgement = certify::judge<dim>(level.discrete->form.problem(), space_, theirs_,
                                          level.discrete->space, level.level.u, energy->bound);
@@ -196,7 +197,6 @@ template <int dim>
 void JudgedStep<dim>::write_fields(const std::filesystem::path& directory) const
 {
   const JudgementRecord& record = this->record();
-  if (!record.judgement) return;
   const certify::Judgement& judgement = *record.judgement;
   io::write_file(directory / "judged_cells.csv", judged_cells_csv<dim>(case_.mesh, judgement.displacement));
   std::vector<io::CellField> fields = {{"distance", judgement.displacement.cells}};

@@ -70,7 +70,7 @@ class JudgedStep
   [[nodiscard]] bool is_worse_than(const JudgedStep& other) const;
   void drop_level() { last_.level.reset(); }
 
-  /// Writes judged_cells.csv, and their displacement with the distances as judged.vtu, if there is a bound.
+  /// Writes judged_cells.csv, and their displacement with the distances as judged.vtu. There must be a bound.
   void write_fields(const std::filesystem::path& directory) const;
   /// For the page; null unless there is a bound and the level is kept as a whole.
   [[nodiscard]] io::Json surfaces() const;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "app/output_directory.h"
 #include "app/page/packed_array.h"
 #include "app/page/page_level.h"
 #include "app/result/judged_steps.h"
@@ -193,8 +194,11 @@ io::Json judged_surfaces(const contact::NitscheForm<dim>& form, const certify::F
 void write_judgement_page(const PageTemplate& page, const std::filesystem::path& directory,
                           std::span<const JudgementRecord> steps, const io::Json& surfaces)
 {
-  const std::vector<std::string> files = {"judgement.json", "judged_cells.csv", "judged.vtu", "report.html"};
-  io::Json data{{"judgement", judgement_object(steps[worst_step(steps)])},
+  const std::size_t worst = worst_step(steps);
+  std::vector<std::string> files = {"judgement.json", "judged_cells.csv", "judged.vtu", "report.html"};
+  for (const char* name : {"judged_cells.csv", "judged.vtu"})
+    files.push_back((judged_step_directory(worst) / name).string());
+  io::Json data{{"judgement", judgement_object(steps[worst])},
                 {"program", io::program_json(io::build_facts())},
                 {"machine", machine_json()},
                 {"files", files_json(directory, files)},

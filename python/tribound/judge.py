@@ -87,13 +87,14 @@ def judge(
     """Bounds the error of a solution on the mesh of the case from both sides, as `tribound judge`.
 
     solution: a file of docs/judge.md, or arrays: points (n, d), displacements (n, d) and perhaps stresses
-    (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. interpolate: a file on
-    another mesh is judged by its interpolant. steps: every load step of the case is judged; solution may be a
-    list then, one for each. numbers: what was computed for quantities of the case, with steps a list each.
+    (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. interpolate: a file
+    on another mesh is judged by its interpolant. steps: every load step of the case is judged; solution may
+    be a list then, one for each. numbers: what was computed for quantities of the case, with steps a list each.
     accept: the largest relative error.
     """
     place = Place(directory)
     given = Input(case, mesh, set, place)
+    values = {name: np.atleast_1d(value).tolist() for name, value in (numbers or {}).items()}
     solutions: Sequence[Any] = solution if isinstance(solution, list) else [solution]
     options = {
         "solutions": [_file(place.path, number, one) for number, one in enumerate(solutions)],
@@ -103,7 +104,7 @@ def judge(
         "steps": steps,
         "step": step,
         "load_step": load_step,
-        "numbers": [f"{name}={','.join(map(repr, np.atleast_1d(value).tolist()))}" for name, value in (numbers or {}).items()],
+        "numbers": [f"{name}={','.join(map(repr, listed))}" for name, listed in values.items()],
         "accept": accept,
     }
     Work(lambda _: _tribound.judge(given.document, given.overrides, not verbose, options), verbose).result()

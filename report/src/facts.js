@@ -131,8 +131,9 @@ function heldTables({ tables, certificate }) {
 /** `data`: of the page of a run. */
 export function filesSection(files, data) {
   if (files.length === 0 && !data) return null;
-  const item = (name) => element("li", {}, element("a", { href: encodeURI(name) }, name), contents[name] ? ` \u2013 ${contents[name]}` : "");
-  const vtu = files.filter((name) => name.endsWith(".vtu") && !contents[name]);
+  const contentsOf = (name) => contents[name.replace(/^judged_steps\/\d+\//, "")];
+  const item = (name) => element("li", {}, element("a", { href: encodeURI(name) }, name), contentsOf(name) ? ` \u2013 ${contentsOf(name)}` : "");
+  const vtu = files.filter((name) => name.endsWith(".vtu") && !contentsOf(name));
   return section("files", "Files", "The other files", null, data ? heldTables(data) : null,
     files.length === 0 ? null : element("p", { class: "lead" }, "They lie beside this page:"),
     element("ul", { class: "files" }, files.filter((name) => !vtu.includes(name)).map(item)),

@@ -19,7 +19,8 @@ PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 
 def pressed(**contact: Any) -> dict[str, Any]:
     """A block that is pressed down and pushed, in two steps."""
-    quantities = [{"name": "work", "kind": "load_work"}, {"name": "floor", "kind": "contact_force", "direction": [0, 1]}]
+    floor = {"name": "floor", "kind": "contact_force", "direction": [0, 1]}
+    quantities = [{"name": "work", "kind": "load_work"}, floor]
     case = block(2, 2, history={"steps": [0.5, 1.0]}, adapt={"tolerance": 0.03}, quantity=quantities)
     case["boundary"]["bottom"]["contact"] = {"gap": 0, **contact}
     case["boundary"]["top"] = {"traction": [0, "-0.1*t"]}
@@ -56,11 +57,12 @@ class Steps(unittest.TestCase):
         for law in LAWS:
             case = pressed(**law)
             theirs = [arrays(level) for level in tb.run(case, keep_levels=True, set=COARSE).levels]
-            numbers = {"floor": [0.03, 0.06]}
-            together = tb.judge(case, theirs, steps=True, numbers=numbers)
+            floor = [0.03, 0.06]
+            together = tb.judge(case, theirs, steps=True, numbers={"floor": floor})
             self.assertEqual(len(together.steps), 2)
             for number, step in enumerate(together.steps, 1):
-                alone = tb.judge(case, theirs[number - 1], load_step=number, numbers={"floor": numbers["floor"][number - 1]})
+                own = {"floor": floor[number - 1]}
+                alone = tb.judge(case, theirs[number - 1], load_step=number, numbers=own)
                 with self.subTest(law=law, number=number):
                     self.assertEqual((step["load_step"], step["t"]), (number, [0.5, 1.0][number - 1]))
                     different = {key for key in alone if alone[key] != step[key]}
@@ -76,7 +78,7 @@ class Steps(unittest.TestCase):
         case = pressed(**LAWS[1])
         levels = tb.run(case, keep_levels=True, set=COARSE).levels
         judged = tb.judge(case, [arrays(level)[:2] for level in levels], steps=True)
-        finest = tb.run(case, set={"degree": 3, "adapt.tolerance": 0.005, "certify.energy": "every"}, keep_levels=True)
+        finest = tb.run(case, set={"degree": 3, "adapt.tolerance": 0.005, "certify.energy": "every"})
         for step, level, record in zip(judged.steps, levels, finest.certificate["steps"]):
             work, floor = step["quantities"]
             self.assertAlmostEqual(work["theirs"], work_of_loads(level, step["t"]), places=12)
@@ -88,7 +90,8 @@ class Steps(unittest.TestCase):
 
     def test_thresholds_are_those_of_the_worst(self) -> None:
         case = pressed(**LAWS[0])
-        good = [arrays(level)[:2] for level in tb.run(case, keep_levels=True, set={"adapt.max_levels": 0}).levels]
+        fair = tb.run(case, keep_levels=True, set={"adapt.max_levels": 0})
+        good = [arrays(level)[:2] for level in fair.levels]
         bad = [good[0], (good[1][0], 2 * good[1][1])]
         for theirs, status in ((good, "accepted"), (bad, "rejected")):
             judged = tb.judge(case, theirs, steps=True, accept=0.5)
@@ -99,7 +102,8 @@ class Steps(unittest.TestCase):
 
     def test_without_a_bound_statics_count(self) -> None:
         case = pressed(friction="none")
-        case["boundary"]["bottom"] = {"interface": {"law": "joint", "tensile_strength": 10, "fracture_energy": 1000}}
+        joint = {"law": "joint", "tensile_strength": 10, "fracture_energy": 1000}
+        case["boundary"]["bottom"] = {"interface": joint}
         del case["quantity"]
         theirs = [arrays(level) for level in tb.run(case, keep_levels=True, set=COARSE).levels]
         judged = tb.judge(case, theirs, steps=True, set={"adapt.tolerance": 0.2})
@@ -116,7 +120,8 @@ class Steps(unittest.TestCase):
         case = pressed(**LAWS[1])
         case["history"]["steps"] = [0.5, 1.0, 40.0]
         case["newton"] = {"max_steps": 3}
-        theirs = [arrays(level)[:2] for level in tb.run(pressed(**LAWS[1]), keep_levels=True, set=COARSE).levels]
+        coarse = tb.run(pressed(**LAWS[1]), keep_levels=True, set=COARSE)
+        theirs = [arrays(level)[:2] for level in coarse.levels]
         with tempfile.TemporaryDirectory() as directory:
             try:
                 tb.judge(case, [*theirs, theirs[1]], steps=True, directory=directory)
@@ -131,14 +136,18 @@ class Steps(unittest.TestCase):
 
 
 class Pairs(unittest.TestCase):
+    case: dict[str, Any]
+    folder: Path
+    theirs: list[tuple[Any, ...]]
+
     @classmethod
     def setUpClass(cls) -> None:
+        directory = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(directory.cleanup)
+        cls.folder = Path(directory.name)
         cls.case = pressed(**LAWS[0])
-        cls.directory = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.directory.cleanup)
-        cls.folder = Path(cls.directory.name)
-        cls.result = tb.run(cls.case, keep_levels=True, set=COARSE, directory=cls.folder / "theirs")
-        cls.theirs = [arrays(level)[:2] for level in cls.result.levels]
+        result = tb.run(cls.case, keep_levels=True, set=COARSE, directory=cls.folder / "theirs")
+        cls.theirs = [arrays(level)[:2] for level in result.levels]
 
     def test_a_series_of_paraview(self) -> None:
         series = self.folder / "theirs/series.pvd"
@@ -154,9 +163,8 @@ class Pairs(unittest.TestCase):
 
     def test_times_choose_among_more_steps(self) -> None:
         """The series has the states before the first load step and between both, too."""
-        text = "".join(
-            f'<DataSet timestep="{t}" file="theirs/step_00{number}.vtu"/>' for t, number in ((0, 2), (0.5, 1), (0.75, 1), (1, 2))
-        )
+        files = ((0, 2), (0.5, 1), (0.75, 1), (1, 2))
+        text = "".join(f'<DataSet timestep="{t}" file="theirs/step_00{number}.vtu"/>' for t, number in files)
         series = self.folder / "more.pvd"
         series.write_text(f'<VTKFile type="Collection"><Collection>{text}</Collection></VTKFile>')
         more = tb.judge(self.case, series, steps=True)
@@ -164,19 +172,46 @@ class Pairs(unittest.TestCase):
         for step, other in zip(more.steps, two.steps):
             self.assertEqual(step["displacement"], other["displacement"])
         series.write_text(series.read_text().replace('"1"', '"2"').replace('"0.75"', '"1.5"'))
-        with self.assertRaisesRegex(tb.InputError, r"4 steps \(t = 0, 0.5, 1.5, 2\), the case 2 load steps \(t = 0.5, 1\)"):
+        words = r"4 steps \(t = 0, 0.5, 1.5, 2\), the case 2 load steps \(t = 0.5, 1\)"
+        with self.assertRaisesRegex(tb.InputError, words):
             tb.judge(self.case, series, steps=True)
+
+    def test_the_steps_of_calculix(self) -> None:
+        """Without friction and gap half of the loads have half of the displacement."""
+        from test_judge import write_frd
+        from test_mesh import hexahedra
+
+        points, cells, sides = hexahedra((4, 2, 2))
+        mesh = tb.Mesh(points, cells, boundaries=sides)
+        case = block(3, 1, history={"steps": [1, 2]}, adapt={"max_levels": 0})
+        del case["mesh"]
+        for free in ("back", "front"):
+            case["boundary"][free] = {"traction": [0, 0, 0]}
+        case["boundary"]["bottom"]["contact"] = {"friction": "none", "gap": 0}
+        case["boundary"]["top"] = {"traction": [0, "-0.05*t", 0]}
+        case["boundary"]["right"] = {"traction": ["0.03*t", "0.02*t", 0]}
+        nodes, displacement, stress = arrays(tb.run(case, mesh, set={"history.steps": [2]}).level)
+        order = [int(np.argmin(((nodes - x) ** 2).sum(axis=1))) for x in points]
+        file = self.folder / "analysis.frd"
+        write_frd(file, points, cells, displacement[order], stress[order])
+        judged = tb.judge(case, file, mesh, steps=True)
+        for number, step in enumerate(judged.steps, 1):
+            self.assertIn(f"step {number} (t = {number})", step["solution"]["description"])
+        first, second = (step["displacement"] for step in judged.steps)
+        self.assertAlmostEqual(2 * first["distance"] / second["distance"], 1, places=4)
+        self.assertAlmostEqual(2 * first["bound"] / second["bound"], 1, places=4)
 
     def test_what_does_not_pair_is_refused(self) -> None:
         alone = block(2, 2)
-        for case, theirs, options, words in (
+        refused: list[tuple[dict[str, Any], list[Any], dict[str, Any], str]] = [
             (self.case, self.theirs[:1], {"steps": True}, "has 1 step, the case 2 load steps"),
-            (self.case, [*self.theirs, self.theirs[0]], {"steps": True}, "has 3 steps, the case 2 load steps"),
+            (self.case, [*self.theirs, *self.theirs], {"steps": True}, "has 4 steps, the case 2 load steps"),
             (self.case, self.theirs, {}, "is a second solution"),
             (self.case, self.theirs, {"steps": True, "load_step": 1}, "either --steps"),
             (self.case, self.theirs, {"steps": True, "numbers": {"floor": 1}}, "has 1 value for 2 steps"),
             (alone, self.theirs, {"steps": True}, "has no load steps"),
-        ):
+        ]
+        for case, theirs, options, words in refused:
             with self.subTest(words=words), self.assertRaisesRegex(tb.InputError, words):
                 tb.judge(case, theirs, **options)
 
@@ -188,12 +223,16 @@ class Pairs(unittest.TestCase):
             tb.judge(self.case, [self.theirs[0], (points, broken)], steps=True)
 
 
-@unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "the program is not named, or mpirun is not installed")
+@unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "no program, or no mpirun")
 class Program(unittest.TestCase):
     def judge(self, folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
         start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        command = [*start, str(PROGRAM), "judge", "case.toml", "--solution", "theirs/series.pvd", "--steps", "-q", *options]
-        return subprocess.run(command, cwd=folder, env=os.environ, capture_output=True, text=True)  # without what MPI has set
+        series = ["--steps", "--solution", "theirs/series.pvd"]
+        command = [*start, str(PROGRAM), "judge", "case.toml", "-q", *series]
+        environment = dict(os.environ)  # without what MPI has set in this process
+        return subprocess.run(
+            [*command, *options], cwd=folder, env=environment, capture_output=True, text=True
+        )
 
     def test_ranks_and_files(self) -> None:
         with tempfile.TemporaryDirectory() as directory:
@@ -209,8 +248,8 @@ class Program(unittest.TestCase):
             self.assertEqual(table[0][:4], ["errors", "step", "t", "displacement"])
             self.assertEqual([row[0] for row in table[1:]], ["1", "2"])
             self.assertEqual([row[1] for row in table[1:]], ["0.5", "1"])
-            judged = [json.loads((folder / name / "judge/judgement.json").read_text()) for name in ("one", "two")]
-            for a, b in zip(judged[0]["steps"], judged[1]["steps"]):
+            judged = [folder / name / "judge/judgement.json" for name in ("one", "two")]
+            for a, b in zip(*(json.loads(file.read_text())["steps"] for file in judged)):
                 for field in ("displacement", "stress"):
                     np.testing.assert_allclose(a[field]["error"], b[field]["error"], rtol=1e-8)
             for number in ("001", "002"):
