@@ -89,8 +89,8 @@ def judge(
     solution: a file of docs/judge.md, or arrays: points (n, d), displacements (n, d) and perhaps stresses
     (n, 3) xx yy xy or (n, 6) xx yy zz xy yz xz. field, stress, step: which of the file. interpolate: a file
     on another mesh is judged by its interpolant. steps: every load step of the case is judged; solution may
-    be a list then, one for each. numbers: what was computed for quantities of the case, with steps a list each.
-    accept: the largest relative error.
+    be a list then, one for each. numbers: what was computed for quantities of the case, with steps a list
+    each. accept: the largest relative error.
     """
     place = Place(directory)
     given = Input(case, mesh, set, place)

@@ -116,23 +116,23 @@ class Steps(unittest.TestCase):
             t = step["t"]
             np.testing.assert_allclose(pushed["ours"], [0.06 * t * t, 0.04 * t], rtol=1e-9)
 
-    def test_a_path_that_ends_early_or_needs_steps_between(self) -> None:
+    def test_a_path_that_ends_before_its_last_value(self) -> None:
+        """The block slides away at t = 1.5. What halved steps find before is no load step of the case."""
         case = pressed(**LAWS[1])
-        case["history"]["steps"] = [0.5, 1.0, 40.0]
-        case["newton"] = {"max_steps": 3}
-        coarse = tb.run(pressed(**LAWS[1]), keep_levels=True, set=COARSE)
+        case["boundary"]["left"] = {"traction": [0, 0]}
+        case["boundary"]["right"] = {"traction": ["0.04*t", 0]}
+        coarse = tb.run(case, keep_levels=True, set=COARSE)
         theirs = [arrays(level)[:2] for level in coarse.levels]
+        case["history"]["steps"] = [0.5, 1.0, 2.0]
         with tempfile.TemporaryDirectory() as directory:
-            try:
-                tb.judge(case, [*theirs, theirs[1]], steps=True, directory=directory)
-            except tb.SolveError:
-                pass
-            steps = json.loads((Path(directory) / "judge/judgement.json").read_text())["steps"]
-        for step in steps:
-            if step["displacement"] is None:
-                self.assertTrue(step["reason"])
-            else:
-                self.assertEqual(step["t"], case["history"]["steps"][steps.index(step)])
+            judged = tb.judge(case, [*theirs, theirs[1]], steps=True, directory=directory)
+            certificate = json.loads((judged.directory / "certificate.json").read_text())
+        self.assertEqual([step["t"] for step in certificate["steps"]], [0.5, 1.0, 1.5])
+        self.assertEqual([step["load_step"] for step in judged.steps], [1, 2, None])
+        self.assertEqual([step["t"] for step in judged.steps], [0.5, 1.0, 2.0])
+        self.assertIn("has not come to this load step", judged.steps[2]["reason"])
+        self.assertIsNotNone(judged.steps[1].relative)
+        self.assertIn(judged["worst"], (1, 2))
 
 
 class Pairs(unittest.TestCase):
