@@ -1,4 +1,4 @@
-"""Judgements against errors that are computed here, with code that shares nothing with the program."""
+"""Judgements against errors that are computed by true_errors.py, with code that shares nothing with the program."""
 
 import importlib.util
 import json
@@ -6,6 +6,7 @@ import os
 import subprocess
 import tempfile
 import unittest
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,78 +15,25 @@ import tribound as tb
 from numpy.typing import NDArray
 
 from small_cases import block, two_boxes
+from true_errors import Fields, Squares, squared_errors
 
 Floats = NDArray[np.float64]
 PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
 
 
-class Polynomials:
-    """Lagrange functions on a simplex, from the monomials of the first barycentric coordinates."""
-
-    def __init__(self, indices: NDArray[np.int32]) -> None:
-        d = indices.shape[1] - 1
-        self.p = int(indices[0].sum())
-        powers = np.array(np.meshgrid(*[range(self.p + 1)] * d)).reshape(d, -1).T
-        self.powers = powers[powers.sum(axis=1) <= self.p]
-        self.coefficients = np.linalg.inv(self.monomials(indices[:, 1:] / self.p))
-
-    def monomials(self, x: Floats) -> Floats:
-        return np.prod(x[:, None, :] ** self.powers[None], axis=2)
-
-    def values(self, x: Floats) -> Floats:
-        return self.monomials(x) @ self.coefficients
-
-    def gradients(self, x: Floats) -> Floats:
-        """(points, functions, d)."""
-        parts = []
-        for k in range(x.shape[1]):
-            lower = np.maximum(self.powers - (np.arange(x.shape[1]) == k), 0)
-            parts.append((self.powers[:, k] * np.prod(x[:, None, :] ** lower[None], axis=2)) @ self.coefficients)
-        return np.stack(parts, axis=2)
+def fields(level: tb.Level, stress: Floats | None = None) -> Fields:
+    """stress: at the nodes of the level."""
+    return Fields(level.mesh.points[level.mesh.cells], level.cell_node_indices, level.displacement[level.cell_nodes],
+                  None if stress is None else stress[level.cell_nodes])
 
 
-def rule(d: int, n: int) -> tuple[Floats, Floats]:
-    """A Gauss rule on the reference simplex, by collapsing a cube."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    x, w = (x + 1) / 2, w / 2
-    grid = np.stack(np.meshgrid(*[x] * d, indexing="ij"), axis=-1).reshape(-1, d)
-    weights = np.prod(np.stack(np.meshgrid(*[w] * d, indexing="ij"), axis=-1).reshape(-1, d), axis=1)
-    points = np.empty_like(grid)
-    rest = np.ones(len(grid))
-    for k in range(d):
-        points[:, k] = rest * grid[:, k]
-        weights = weights * rest
-        rest = rest * (1 - grid[:, k])
-    return points, weights
-
-
-def energy_distance(theirs: tb.Level, ours: tb.Level, E: float, nu: float) -> float:
-    """||v - u|| over cells of the finer mesh, each inside one of theirs; plane strain in 2D."""
-    d = theirs.dimension
-    lame, mu = E * nu / (1 + nu) / (1 - 2 * nu), E / 2 / (1 + nu)
-    fine, coarse = Polynomials(ours.cell_node_indices), Polynomials(theirs.cell_node_indices)
-    corners = theirs.mesh.points[theirs.mesh.cells]
-    inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
-    x, w = rule(d, 4)
-    total = 0.0
-    for c, cell in enumerate(ours.mesh.cells):
-        own = ours.mesh.points[cell]
-        jacobian = (own[1:] - own[0]).T
-        points = own[0] + x @ jacobian.T
-        inside = np.einsum("cij,cj->ci", inverse, own.mean(axis=0) - corners[:, 0])
-        parent = int(np.argmax(np.minimum(inside.min(axis=1), 1 - inside.sum(axis=1))))
-        local = (points - corners[parent, 0]) @ inverse[parent].T
-        gradient = np.einsum(
-            "qnk,nd,kj->qdj", fine.gradients(x), ours.displacement[ours.cell_nodes[c]], np.linalg.inv(jacobian)
-        ) - np.einsum(
-            "qnk,nd,kj->qdj", coarse.gradients(local), theirs.displacement[theirs.cell_nodes[parent]], inverse[parent]
-        )
-        strain = (gradient + np.swapaxes(gradient, 1, 2)) / 2
-        trace = np.trace(strain, axis1=1, axis2=2)
-        density = lame * trace**2 + 2 * mu * (strain**2).sum(axis=(1, 2))
-        total += abs(np.linalg.det(jacobian)) * (w * density).sum()
-    return float(np.sqrt(total))
+def averaged_stress(level: tb.Level) -> Floats:
+    """At the nodes, the mean over their cells."""
+    total, count = np.zeros((len(level.nodes), 6)), np.zeros(len(level.nodes))
+    np.add.at(total, level.cell_nodes, level.stress)
+    np.add.at(count, level.cell_nodes, 1)
+    return total / count[:, None]
 
 
 def random_case(random: np.random.Generator, d: int) -> dict[str, Any]:
@@ -96,10 +44,13 @@ def random_case(random: np.random.Generator, d: int) -> dict[str, Any]:
     cells = [int(n) for n in random.integers(1, 5 if d == 2 else 3, d)]
     load = [float(x) for x in random.uniform(-0.1, 0.1, d)]
     load[1] = -abs(load[1]) - 0.02
+    box = {"lower": [0.0] * d, "upper": [2.0, 1.0, 1.0][:d], "cells": cells}
+    material: dict[str, Any] = {"E": 1.0, "nu": float(random.choice([0.0, 0.3, 0.45]))}
+    material["inner"] = {"E": float(random.uniform(0.5, 2)), "nu": material["nu"], "where": random_half(random, box)}
     return {
         "degree": 2,
-        "mesh": {"box": {"lower": [0.0] * d, "upper": [2.0, 1.0, 1.0][:d], "cells": cells}},
-        "material": {"E": 1.0, "nu": float(random.choice([0.0, 0.3, 0.45]))},
+        "mesh": {"box": box},
+        "material": material,
         "boundary": {
             "left": {"displacement": [0.0] * d},
             "top": {"traction": load},
@@ -108,6 +59,16 @@ def random_case(random: np.random.Generator, d: int) -> dict[str, Any]:
         "quantity": [{"name": "energy", "kind": "energy"}],
         "adapt": {"max_dofs": 3000 if d == 2 else 6000, "max_levels": 20},
     }
+
+
+def random_half(random: np.random.Generator, box: dict[str, Any]) -> str:
+    """A formula for one side of a plane that has cells on both of its sides."""
+    mesh = tb.Mesh.box(**box)
+    slopes = random.uniform(-1, 1, mesh.dimension)
+    heights = np.unique(mesh.points[mesh.cells].mean(axis=1) @ slopes)
+    cut = int(random.integers(1, len(heights)))
+    terms = " + ".join(f"({float(slope)!r})*{axis}" for slope, axis in zip(slopes, "xyz"))
+    return f"{terms} > {float(heights[cut - 1 : cut + 1].mean())!r}"
 
 
 class Guarantee(unittest.TestCase):
@@ -121,49 +82,84 @@ class Guarantee(unittest.TestCase):
             theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": degree}).level
             if np.abs(theirs.displacement).max() == 0:
                 continue
-            solution = (theirs.nodes, theirs.displacement)
+            stress = averaged_stress(theirs)
+            solution = (theirs.nodes, theirs.displacement, stress)
             wide = tb.judge(case, solution, set={"judge.sharpness": 1e6})
             narrow = tb.judge(case, solution, set={"judge.sharpness": 0.02})
             with self.subTest(seed=seed, d=d, degree=degree):
-                self.assertEqual(wide.status, "judged")
-                self.assertEqual(narrow["displacement"]["bound"] <= 0.02 * narrow["displacement"]["distance"],
-                                 narrow.status == "judged")
-                assert wide.error and narrow.error
-                self.assertLessEqual(wide.error[0], narrow.error[1])
-                self.assertLessEqual(narrow.error[0], wide.error[1])
-                self.assertLessEqual(narrow.error[1] - narrow.error[0], wide.error[1] - wide.error[0])
-                finest = tb.run(case, set={"degree": 3, "adapt.measure": "energy", "adapt.tolerance": 1e-4})
-                true = energy_distance(theirs, finest.level, 1.0, case["material"]["nu"])
+                self.check_widths(wide, narrow)
+                finest = tb.run(case, set={"degree": 3, "adapt.measure": "energy", "adapt.tolerance": 1e-5,
+                                           "adapt.max_dofs": 20000})
                 own = finest.certificate["energy_error"]["bound"]  # of the finer solution itself
+                of_region = [case["material"].get(name, case["material"]) for name in theirs.mesh.regions]
+                E, nu = (np.array([m[key] for m in of_region])[theirs.mesh.region_of] for key in ("E", "nu"))
+                true = squared_errors(fields(theirs, stress), fields(finest.level), E, nu)
                 for judgement in (wide, narrow):
-                    assert judgement.error
-                    self.assertLessEqual(judgement.error[0] - own, true)
-                    self.assertLessEqual(true, judgement.error[1] + own)
+                    self.check_fields(judgement, true, theirs, own)
+                    self.check_parts(judgement, true, theirs, own, random)
                 (energy,) = narrow["quantities"]
                 self.assertLessEqual(energy["wrong_by"][0], energy["wrong_by"][1])
+
+    def check_widths(self, wide: tb.Judgement, narrow: tb.Judgement) -> None:
+        self.assertEqual(wide.status, "judged")
+        self.assertEqual(narrow["displacement"]["bound"] <= 0.02 * narrow["displacement"]["distance"],
+                         narrow.status == "judged")
+        for field in ("displacement", "stress"):
+            (lower, upper), (low, high) = wide[field]["error"], narrow[field]["error"]
+            self.assertLessEqual(lower, high)
+            self.assertLessEqual(low, upper)
+            self.assertLessEqual(high - low, upper - lower)
+
+    def check_fields(self, judgement: tb.Judgement, true: Squares, theirs: tb.Level, own: float) -> None:
+        """On the body and on every region."""
+        for field in ("displacement", "stress"):
+            squares, record = getattr(true, field), judgement[field]
+            self.assert_between(record["error"], squares, own)
+            self.assertEqual({region["name"] for region in record["regions"]}, {"box", "inner"})
+            for region in record["regions"]:
+                self.assert_between(region["error"], squares[theirs.mesh.regions[region["name"]]], own)
+
+    def check_parts(self, judgement: tb.Judgement, true: Squares, theirs: tb.Level, own: float,
+                    random: np.random.Generator) -> None:
+        """On unions of cells, by the distances of the cells."""
+        table = np.genfromtxt(judgement.directory / "judged_cells.csv", delimiter=",", names=True, dtype=None,
+                              encoding=None)
+        centres = np.stack([table[axis] for axis in "xyz"[: theirs.dimension]], axis=1)
+        np.testing.assert_allclose(centres, theirs.mesh.points[theirs.mesh.cells].mean(axis=1), atol=1e-9)
+        bound = judgement["displacement"]["bound"]
+        for _ in range(4):
+            part = random.random(len(table)) < random.random()
+            distance = float(np.sqrt((table["distance"][part] ** 2).sum()))
+            self.assert_between((distance - bound, distance + bound), true.displacement[part], own)
+
+    def assert_between(self, interval: Sequence[float], squares: Floats, own: float) -> None:
+        """own: the error of the finer solution that the squares were computed with."""
+        error = float(np.sqrt(squares.sum()))
+        self.assertLessEqual(interval[0] - own, error)
+        self.assertLessEqual(error, interval[1] + own)
 
     def test_distance_is_that_of_an_independent_quadrature(self) -> None:
         for d, degree in ((2, 1), (2, 2), (3, 1)):
             case = block(d, 2, adapt={"max_levels": 3})
             theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": degree}).level
+            stress = averaged_stress(theirs)
             with tempfile.TemporaryDirectory() as directory:
                 judged = tb.judge(
-                    case, (theirs.nodes, theirs.displacement), set={"judge.sharpness": 1e-9}, directory=directory
+                    case, (theirs.nodes, theirs.displacement, stress), set={"judge.sharpness": 1e-9}, directory=directory
                 )
                 ours = tb.run(tb.Case.read(Path(directory) / "judge/case.toml"), set={
                     "adapt.measure": "energy", "certify.energy": "every", "adapt.tolerance": 1e-12,
                 }).level
             self.assertEqual(judged["cells"], len(ours.eta))
-            expected = energy_distance(theirs, ours, 1.0, 0.3)
-            self.assertAlmostEqual(judged["displacement"]["distance"] / expected, 1, places=6)
+            expected = squared_errors(fields(theirs, stress), fields(ours), 1.0, 0.3)
+            for field in ("displacement", "stress"):
+                distance = np.sqrt(getattr(expected, field).sum())
+                self.assertAlmostEqual(judged[field]["distance"] / distance, 1, places=6)
 
     def test_stresses(self) -> None:
         case = block(2, 2, adapt={"max_dofs": 20000})
         theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": 1}).level
-        nodal, count = np.zeros((len(theirs.nodes), 6)), np.zeros(len(theirs.nodes))
-        np.add.at(nodal, theirs.cell_nodes, theirs.stress)
-        np.add.at(count, theirs.cell_nodes, 1)
-        solution = (theirs.nodes, theirs.displacement, nodal / count[:, None])
+        solution = (theirs.nodes, theirs.displacement, averaged_stress(theirs))
         wide = tb.judge(case, solution, set={"judge.sharpness": 1e6})
         narrow = tb.judge(case, solution, set={"judge.sharpness": 0.05})
         assert wide.stress and narrow.stress and narrow.relative
@@ -237,12 +233,10 @@ class Strangers(unittest.TestCase):
         level = tb.run(case, mesh, set={"adapt.max_levels": 0, "degree": 1}).level
         number = {tuple(np.round(x, 9)): i for i, x in enumerate(level.nodes)}
         order = [number[tuple(np.round(x, 9))] for x in points]
-        stress, count = np.zeros((len(level.nodes), 6)), np.zeros(len(level.nodes))
-        np.add.at(stress, level.cell_nodes, level.stress)
-        np.add.at(count, level.cell_nodes, 1)
+        stress = averaged_stress(level)
         with tempfile.TemporaryDirectory() as directory:
             file = Path(directory) / "analysis.frd"
-            write_frd(file, points, cells, level.displacement[order], (stress / count[:, None])[order])
+            write_frd(file, points, cells, level.displacement[order], stress[order])
             judged = tb.judge(case, file, mesh)
             first = tb.judge(case, file, mesh, step=1)
         self.assertIn(judged.status, ("judged", "wide"))
@@ -260,12 +254,7 @@ class Strangers(unittest.TestCase):
         level = tb.run(case, set={"adapt.max_levels": 0, "degree": 1}).level
         space = np.column_stack([level.nodes, np.zeros(len(level.nodes))])
         u = np.column_stack([level.displacement, np.zeros(len(level.nodes))])
-        sigma = np.zeros((len(space), 3, 3))
-        count = np.zeros(len(space))
-        tensor = level.stress[:, :, [0, 3, 5, 3, 1, 4, 5, 4, 2]].reshape(*level.cell_nodes.shape, 3, 3)
-        np.add.at(sigma, level.cell_nodes, tensor)
-        np.add.at(count, level.cell_nodes, 1)
-        sigma /= count[:, None, None]
+        sigma = averaged_stress(level)[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
         shuffled = np.random.default_rng(3).permutation(len(space))
         back = np.argsort(shuffled)
         with tempfile.TemporaryDirectory() as directory:
