@@ -2,7 +2,7 @@
 
 import getfem as gf
 import numpy as np
-from getfem_model import Body
+from getfem_model import Body, solve, write
 
 UNSYMMETRIC_ALART_CURNIER = 1
 
@@ -17,6 +17,19 @@ def add_obstacle(body: Body, boundary: str, distance: str, youngs_modulus: float
         UNSYMMETRIC_ALART_CURNIER)
 
 
-def print_force(body: Body, boundary: str) -> None:
-    pressure = gf.asm_generic(body.contact_rule, 0, "-contact", body.boundaries[boundary], body.model)
+def press(name: str, symmetry: dict[str, int], distance: float) -> None:
+    """A body of steel whose boundary "top" is moved down, on the floor y = 0; writes getfem.vtu, prints the force.
+
+    symmetry: boundaries with the direction in which each is held.
+    """
+    E = 200000
+    model = gf.Model("real")
+    body = Body(model, name, E, 0.3)
+    for boundary, direction in symmetry.items():
+        body.hold(boundary, [direction])
+    body.hold("top", [1], -distance)
+    add_obstacle(body, "contact", "y", E)
+    solve(model, E)
+    write(body)
+    pressure = gf.asm_generic(body.contact_rule, 0, "-contact", body.boundaries["contact"], model)
     print("RESULT contact_force", float(pressure))
