@@ -1,4 +1,4 @@
-"""Errors of fields on nested meshes of simplices, computed with NumPy alone: by code that shares nothing with the program.
+"""Errors of fields on nested meshes of simplices, with NumPy alone: this shares nothing with the program.
 
 Plane problems are those of plane strain.
 """
@@ -90,15 +90,16 @@ def parents(coarse: Floats, fine: Floats) -> Ints:
         near = order[first:last]
         local = (centres[near] - corners[0]) @ inverse[cell]
         parent[near[(local > 0).all(axis=1) & (local.sum(axis=1) < 1)]] = cell
-    volumes = [np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])) for cells in (coarse, fine)]
-    if parent.min() < 0 or not np.allclose(np.bincount(parent, volumes[1], len(coarse)), volumes[0], rtol=1e-9):
+    whole, part = (np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])) for cells in (coarse, fine))
+    if parent.min() < 0 or not np.allclose(np.bincount(parent, part, len(coarse)), whole, rtol=1e-9):
         raise ValueError("the fine mesh is no refinement of the coarse one")
     return parent
 
 
 def squared_errors(theirs: Fields, reference: Fields, E: float | Floats, nu: float | Floats) -> Squares:
     """||v - u||^2 and ||s - sigma(u)||^2 per cell; E and nu may be those of each of their cells."""
-    lame, mu = (np.broadcast_to(k, len(theirs.corners)) for k in (E * nu / (1 + nu) / (1 - 2 * nu), E / 2 / (1 + nu)))
+    constants = (E * nu / (1 + nu) / (1 - 2 * nu), E / 2 / (1 + nu))
+    lame, mu = (np.broadcast_to(constant, len(theirs.corners)) for constant in constants)
     parent = parents(theirs.corners, reference.corners)
     squares = np.zeros((2, len(theirs.corners)))
     for first in range(0, len(parent), BATCH):
@@ -131,10 +132,10 @@ def _batch(theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Flo
 
 def _strain(gradients: Floats, displacement: Floats, inverse: Floats) -> Floats:
     slopes = np.einsum("cnd,cqnj->cqdj", displacement, gradients @ np.swapaxes(inverse, 1, 2)[:, None])
-    return (slopes + np.swapaxes(slopes, 2, 3)) / 2
+    return np.asarray((slopes + np.swapaxes(slopes, 2, 3)) / 2)
 
 
 def _trace(tensor: Floats) -> Floats:
     """The trace times the identity."""
     d = tensor.shape[-1]
-    return np.trace(tensor, axis1=2, axis2=3)[..., None, None] * np.eye(d)
+    return np.asarray(np.trace(tensor, axis1=2, axis2=3)[..., None, None] * np.eye(d))
