@@ -20,6 +20,7 @@ class Solution:
     forces: dict = field(default_factory=dict)  # name in capitals -> [force of each step]
     points: np.ndarray = None  # nodes x 3; of plane elements both sides of the sheet
     displacements: list = field(default_factory=list)  # of each step, nodes x 3
+    stresses: list = field(default_factory=list)  # of each step, nodes x 6: xx yy zz xy yz xz
 
 
 def stiffened(text, factor):
@@ -62,27 +63,33 @@ def read_forces(text, solution):
 
 
 def read_fields(text, solution):
-    """Coordinates, and the blocks DISP; numbers have 12 columns, and no blanks between them."""
+    """Coordinates, and the blocks DISP and STRESS; numbers have 12 columns, and no blanks between them."""
     lines = iter(text.splitlines())
     number_of = {}
+
+    def at_nodes(components):
+        numbers, values = block(lines, components)
+        field = np.zeros((len(solution.points), components))
+        field[[number_of[node] for node in numbers]] = values
+        return field
+
     for line in lines:
         if line.startswith("    2C"):
-            numbers, values = block(lines)
+            numbers, values = block(lines, 3)
             number_of = {node: i for i, node in enumerate(numbers)}
             solution.points = values
         elif line.startswith(" -4  DISP"):
-            numbers, values = block(lines)
-            displacement = np.zeros_like(solution.points)
-            displacement[[number_of[node] for node in numbers]] = values
-            solution.displacements.append(displacement)
+            solution.displacements.append(at_nodes(3))
+        elif line.startswith(" -4  STRESS"):
+            solution.stresses.append(at_nodes(6))
 
 
-def block(lines):
+def block(lines, components):
     numbers, values = [], []
     for line in lines:
         if line.startswith(" -3"):
             break
         if line.startswith(" -1"):
             numbers.append(int(line[3:13]))
-            values.append([float(line[i : i + 12]) for i in (13, 25, 37)])
+            values.append([float(line[13 + 12 * i : 25 + 12 * i]) for i in range(components)])
     return numbers, np.array(values)
