@@ -1,4 +1,4 @@
-"""Judgements against errors that are computed by true_errors.py, with code that shares nothing with the program."""
+"""Judgements against errors by true_errors.py, code that shares nothing with the program."""
 
 import importlib.util
 import json
@@ -24,8 +24,9 @@ CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
 
 def fields(level: tb.Level, stress: Floats | None = None) -> Fields:
     """stress: at the nodes of the level."""
-    return Fields(level.mesh.points[level.mesh.cells], level.cell_node_indices, level.displacement[level.cell_nodes],
-                  None if stress is None else stress[level.cell_nodes])
+    of_cells = level.cell_nodes
+    return Fields(level.mesh.points[level.mesh.cells], level.cell_node_indices, level.displacement[of_cells],
+                  None if stress is None else stress[of_cells])
 
 
 def averaged_stress(level: tb.Level) -> Floats:
@@ -46,7 +47,8 @@ def random_case(random: np.random.Generator, d: int) -> dict[str, Any]:
     load[1] = -abs(load[1]) - 0.02
     box = {"lower": [0.0] * d, "upper": [2.0, 1.0, 1.0][:d], "cells": cells}
     material: dict[str, Any] = {"E": 1.0, "nu": float(random.choice([0.0, 0.3, 0.45]))}
-    material["inner"] = {"E": float(random.uniform(0.5, 2)), "nu": material["nu"], "where": random_half(random, box)}
+    E = float(random.uniform(0.5, 2))
+    material["inner"] = {"E": E, "nu": material["nu"], "where": random_half(random, box)}
     return {
         "degree": 2,
         "mesh": {"box": box},
@@ -143,10 +145,9 @@ class Guarantee(unittest.TestCase):
             case = block(d, 2, adapt={"max_levels": 3})
             theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": degree}).level
             stress = averaged_stress(theirs)
+            solution = (theirs.nodes, theirs.displacement, stress)
             with tempfile.TemporaryDirectory() as directory:
-                judged = tb.judge(
-                    case, (theirs.nodes, theirs.displacement, stress), set={"judge.sharpness": 1e-9}, directory=directory
-                )
+                judged = tb.judge(case, solution, set={"judge.sharpness": 1e-9}, directory=directory)
                 ours = tb.run(tb.Case.read(Path(directory) / "judge/case.toml"), set={
                     "adapt.measure": "energy", "certify.energy": "every", "adapt.tolerance": 1e-12,
                 }).level

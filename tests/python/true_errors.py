@@ -110,7 +110,9 @@ def squared_errors(theirs: Fields, reference: Fields, E: float | Floats, nu: flo
     return Squares(squares[0], None if theirs.stress is None else squares[1])
 
 
-def _batch(theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats) -> list[Floats]:
+def _batch(
+    theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats
+) -> list[Floats]:
     """The squares over each of these cells of the reference, which lie in `own` of theirs."""
     corners, outer = reference.corners[cells], theirs.corners[own]
     d = corners.shape[2]
