@@ -48,7 +48,8 @@ class Reference:
 def reference(program: Path, case: Path, tolerance: float, out: Path) -> Reference:
     """tolerance: of the bound of its error, relative to itself."""
     settings = [f"degree={DEGREE}", 'adapt.measure="energy"', f"adapt.energy_tolerance={tolerance}",
-                "adapt.tolerance=1", "adapt.max_levels=40", "output.report=false", f'output.directory="{out}"']
+                "adapt.tolerance=1", "adapt.max_levels=40", "output.report=false",
+                f'output.directory="{out}"']
     words = [word for setting in settings for word in ("--set", setting)]
     threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     run = measure([str(program), "run", str(case), "--quiet", *words], **threads)
