@@ -77,6 +77,7 @@
 #include "tribound/fem/degree.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/lagrange.h"
+#include "tribound/fem/meridian_rules.h"
 #include "tribound/fem/nested.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <string_view>
 #include <utility>
 
@@ -340,6 +341,15 @@ Problem<dim> Problem<dim>::at(double t) const
                    {
                      if (contact.water) contact.water = contact.water->at(t);
                    });
+  return result;
+}
+
+template <int dim>
+Problem<dim> Problem<dim>::axisymmetric() const
+{
+  assert(dim == 2);
+  Problem result = *this;
+  result.is_axisymmetric_ = true;
   return result;
 }
 

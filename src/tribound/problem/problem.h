@@ -198,6 +198,12 @@ class Problem
   [[nodiscard]] Problem with_crack_tips(std::span<const double> tips) const;
   /// Whether any datum names t.
   [[nodiscard]] bool uses_time() const;
+  /// The same on the meridian of bodies of revolution, whose points are (r, z): the hoop strain u_r / r
+  /// counts among the strains, and every integral has the weight r. Only in 2D.
+  [[nodiscard]] Problem axisymmetric() const;
+  [[nodiscard]] bool is_axisymmetric() const { return is_axisymmetric_; }
+  /// The weight of integrals at x: r of an axisymmetric problem, else 1.
+  [[nodiscard]] double weight(const Point<dim>& x) const { return is_axisymmetric_ ? x[0] : 1.0; }
 
   [[nodiscard]] const Material& material(int region) const { return regions_[region].material; }
   /// f in the region; force per volume.
@@ -259,6 +265,7 @@ class Problem
   std::vector<ContactPair<dim>> pairs_;
   std::vector<PairSide> sides_;  ///< of each boundary
   BoundaryCondition<dim> unnamed_;
+  bool is_axisymmetric_ = false;
 };
 
 /// The position of `name` among the groups of a mesh. Throws InputError listing them; `kind` is "region" or
