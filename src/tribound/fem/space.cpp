@@ -185,6 +185,33 @@ std::string fixing_boundary(const problem::Problem<dim>& problem, const Lagrange
 
 }  // namespace
 
+namespace
+{
+
+/// Fixes u_r = 0 at the nodes whose vertices all lie on the axis.
+template <int dim>
+void fix_axis(const LagrangeSpace<dim>& space, Constraints& constraints)
+{
+  const mesh::Mesh<dim>& mesh = space.mesh();
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int i = 0; i < space.basis().n_nodes(); ++i)
+    {
+      bool on_axis = true;
+      for (int v = 0; v <= dim; ++v)
+        on_axis = on_axis && (space.basis().node(i)[v] == 0 || mesh.vertex(mesh.cell(c)[v])[0] == 0);
+      if (!on_axis) continue;
+      const Index dof = dim * space.cell_nodes(c)[i];
+      if (constraints.fixed[dof] && constraints.values[dof] != 0)
+        throw InputError(Where{},
+                         fmt::format("displacement {:.9g} away from the axis is prescribed on it",
+                                     constraints.values[dof]),
+                         "0 or \"free\" as the first component where x = 0");
+      constraints.fixed[dof] = 1;
+    }
+}
+
+}  // namespace
+
 template <int dim>
 Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space)
 {
@@ -228,7 +255,12 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
         if (boundary.fixes(a)) fix(boundary, a, nodes[i], x);
     }
   };
-  mesh.ranks().together([&] { std::ranges::for_each(mesh.boundary(), fix_on); });
+  mesh.ranks().together(
+      [&]
+      {
+        std::ranges::for_each(mesh.boundary(), fix_on);
+        if (problem.is_axisymmetric()) fix_axis(space, constraints);
+      });
   // A node of a ghost cell may be on Gamma_D through a cell that this rank does not have.
   space.update(std::span(constraints.fixed));
   space.update(std::span(constraints.values));

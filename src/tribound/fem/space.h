@@ -83,7 +83,8 @@ struct Constraints
 template <int dim>
 [[nodiscard]] std::int64_t n_free_dofs(const LagrangeSpace<dim>& space, const Constraints& constraints);
 
-/// Nodal interpolation of u_D. Throws InputError where two boundaries prescribe different values for one
+/// Nodal interpolation of u_D; on the axis of an axisymmetric problem u_r = 0. Throws InputError where two
+/// boundaries prescribe different values for one
 /// component at a common node. All ranks call it together.
 template <int dim>
 [[nodiscard]] Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space);

@@ -8,6 +8,7 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/discrete_data.h"
+#include "tribound/contact/nitsche/meridian_cells.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
@@ -39,6 +40,7 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
   const mesh::Mesh<dim>& mesh = space.mesh();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
+  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
   std::vector<double> result(space.n_dofs(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
@@ -46,6 +48,11 @@ std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
     const problem::Material& material = problem.material(mesh.region(c));
     const std::span<const Index> nodes = space.cell_nodes(c);
     if (vanishes<dim>(nodes, u)) continue;  // most cells, if u is only the prescribed displacement
+    if (meridian)
+    {
+      meridian->add_forces(c, u, result);
+      continue;
+    }
     for (int q = 0; q < rule.size(); ++q)
     {
       // (sigma(u), grad phi_i)_T, with J^{-1} moved from the test function to sigma
@@ -90,7 +97,8 @@ double stress_that_matters(const problem::Problem<dim>& problem, const fem::Lagr
   auto& [minus_mu, displacement] = largest;
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
-    volume += mesh::cell_map(mesh, c).measure();
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
+    volume += map.measure() * problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
     minus_mu = std::max(minus_mu, -problem.material(mesh.region(c)).mu);
   }
   for (std::size_t i = 0; i < u.size(); i += dim)
@@ -117,7 +125,8 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
     if (!data.has_body_force(c)) continue;
     data.body_force(c, f);
     for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), cell_rule))
-      fem::add_at_point<dim>(space.cell_nodes(c), cell_table.values_at(q), dx * f[q], load);
+      fem::add_at_point<dim>(space.cell_nodes(c), cell_table.values_at(q),
+                             dx * data.problem().weight(x) * f[q], load);
   }
 
   // (g_N, phi_i)_N
@@ -132,7 +141,7 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
     data.traction(k, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
       fem::add_at_point<dim>(space.cell_nodes(facet.cell), facet_table.on_facet[facet.local].values_at(q),
-                             dx * g[q], load);
+                             dx * data.problem().weight(x) * g[q], load);
   }
 
   return load;
@@ -163,8 +172,14 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   // 42.
   constexpr double unit_round_offs = 1000;
   constexpr double negligible = 1e-5;
+  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
   const auto of_cell = [&](std::size_t c)
   {
+    if (meridian)
+    {
+      const auto [energy, sigma_squared, terms] = meridian->squares(static_cast<Index>(c), u);
+      return Eigen::Array3d(energy, sigma_squared, terms);
+    }
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, static_cast<Index>(c));
     const problem::Material& material = problem.material(mesh.region(static_cast<Index>(c)));
     std::span<const Tensor<dim>> projected;  // of sigma_0
@@ -210,11 +225,17 @@ std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fe
   const mesh::Mesh<dim>& mesh = space.mesh();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
+  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
   std::vector<double> energies(mesh.n_owned_cells(), 0.0);
   parallel_for(energies.size(),
                [&](std::size_t c)
                {
                  const auto cell = static_cast<Index>(c);
+                 if (meridian)
+                 {
+                   energies[c] = meridian->squares(cell, u).energy;
+                   return;
+                 }
                  const mesh::CellMap<dim> map = mesh::cell_map(mesh, cell);
                  for (int q = 0; q < rule.size(); ++q)
                  {

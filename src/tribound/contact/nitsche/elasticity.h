@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file elasticity.h
-/// Linear elasticity: sigma, the bilinear form a(u, v) = (sigma(u), eps(v)) and norms of stresses.
+/// Linear elasticity: sigma, the bilinear form a(u, v) = (sigma(u), eps(v)) and norms of stresses. Integrals
+/// of axisymmetric problems have the weight r and the hoop terms of meridian_cells.h.
 
 #include <span>
 #include <vector>
@@ -26,6 +27,28 @@ template <int dim>
   Tensor<dim> s = material.mu * (gradient + gradient.transpose());
   s.diagonal().array() += material.lambda * gradient.trace();
   return s;
+}
+
+/// The same on a meridian with the hoop strain u_r / r.
+template <int dim>
+[[nodiscard]] Tensor<dim> sigma(const problem::Material& material, const Tensor<dim>& gradient, double hoop)
+{
+  Tensor<dim> s = sigma<dim>(material, gradient);
+  s.diagonal().array() += material.lambda * hoop;
+  return s;
+}
+
+/// The stress around the axis.
+[[nodiscard]] inline double hoop_stress(const problem::Material& material, const Tensor<2>& gradient,
+                                        double hoop)
+{
+  return material.lambda * (gradient.trace() + hoop) + 2 * material.mu * hoop;
+}
+
+/// u_r / r at the radius r; on the axis, where u_r = 0, its limit d_r u_r.
+[[nodiscard]] inline double hoop_strain(double r, double u_r, double dr_u_r)
+{
+  return r > 0 ? u_r / r : dr_u_r;
 }
 
 /// a(phi_j, phi_i) over free i and j, and (K phi_j, phi_i)_S if springs are given. The row of a fixed degree

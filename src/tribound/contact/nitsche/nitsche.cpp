@@ -41,7 +41,8 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
                                               { return is_owned(space.mesh(), segment); })),
       points_(space.mesh().ranks().together([this] { return make_points(); })),
       tables_(space.basis(), segments_, facet_rule().points),
-      nodes_(space.degree(), facet_rule().points),
+      nodes_(problem.is_axisymmetric() ? SegmentNodes<dim>(facet_rule().points)
+                                       : SegmentNodes<dim>(space.degree(), facet_rule().points)),
       node_tables_(space.basis(), segments_, nodes_.nodes())
 {
   add_initial_stress<dim>(data_, space, load_);
@@ -116,7 +117,8 @@ std::vector<ContactPoint<dim>> NitscheForm<dim>::make_points() const
       const Point<dim> normal = segment.normal_at(x);
       check_direction<dim>(space_->mesh(), segment, x, normal);
       const auto [gap, strength, water] = data_.contact(segment, k, facet_rule().points[q]);
-      points.push_back({x, segment.det() * facet_rule().weights[q], normal, gap, strength, water, fresh});
+      points.push_back({x, segment.det() * facet_rule().weights[q] * problem_->weight(x), normal, gap,
+                        strength, water, fresh});
     }
   }
   return points;

@@ -47,7 +47,7 @@ template <int dim>
 struct ContactPoint
 {
   Point<dim> x;                        ///< on the slave
-  double weight;                       ///< of the rule, times measure
+  double weight;                       ///< of the rule, times measure, on a meridian times r
   Point<dim> normal;                   ///< N
   double gap;                          ///< g
   double strength;                     ///< s of the law, 0 where it has none

@@ -46,10 +46,26 @@ SegmentNodes<dim>::SegmentNodes(int degree, std::span<const Point<dim - 1>> poin
   nodes_ = basis.node_points();
   const fem::Tabulation<dim - 1> table = basis.tabulate(points);
   values_.assign(table.values.begin(), table.values.end());
-  products_.reserve(values_.size() * n);
-  for (int i = 0; i < n; ++i)
-    for (int l = 0; l < n; ++l)
-      for (int q = 0; q < table.n_points; ++q) products_.push_back(values_[q * n + i] * values_[q * n + l]);
+  multiply(n);
+}
+
+template <int dim>
+SegmentNodes<dim>::SegmentNodes(std::span<const Point<dim - 1>> points)
+    : nodes_(points.begin(), points.end()), values_(points.size() * points.size(), 0.0)
+{
+  for (std::size_t i = 0; i < points.size(); ++i) values_[i * points.size() + i] = 1;
+  multiply(static_cast<int>(points.size()));
+}
+
+template <int dim>
+void SegmentNodes<dim>::multiply(int n_nodes)
+{
+  const std::size_t n_points = values_.size() / n_nodes;
+  products_.reserve(values_.size() * n_nodes);
+  for (int i = 0; i < n_nodes; ++i)
+    for (int l = 0; l < n_nodes; ++l)
+      for (std::size_t q = 0; q < n_points; ++q)
+        products_.push_back(values_[q * n_nodes + i] * values_[q * n_nodes + l]);
 }
 
 namespace
@@ -69,7 +85,11 @@ Tensor<dim> penalty(const ContactSegment<dim>& segment)
 template <int dim>
 SegmentValues<dim>::SegmentValues(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                   const ContactSegment<dim>& segment, const SegmentTable<dim>& table)
-    : gamma_(penalty(segment)), n_sides_(segment.master ? 2 : 1)
+    : mesh_(space.mesh()),
+      points_(table.points),
+      is_axisymmetric_(problem.is_axisymmetric()),
+      gamma_(penalty(segment)),
+      n_sides_(segment.master ? 2 : 1)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const auto make_side = [&](const SegmentSide<dim>& side, const fem::Tabulation<dim>* tabulation) -> Side
@@ -92,19 +112,33 @@ Point<dim> SegmentValues<dim>::jump(std::span<const double> u, int q) const
 }
 
 template <int dim>
+double SegmentValues<dim>::radius(const Side& side, int q) const
+{
+  const mesh::BoundaryFacet& facet = side.side->facet;
+  return mesh::facet_map(mesh_, facet.cell, facet.local)(side.side->on_facet(points_[q]))[0];
+}
+
+template <int dim>
 Point<dim> SegmentValues<dim>::augmented_traction(std::span<const double> u, int q) const
 {
   Point<dim> stress = Point<dim>::Zero();
   for (const Side& side : sides())
-    stress += sigma<dim>(*side.material, fem::gradient_at<dim>(side.nodes, u, side.table->gradients_at(q),
-                                                               side.inverse_transpose)) *
+  {
+    const Tensor<dim> gradient =
+        fem::gradient_at<dim>(side.nodes, u, side.table->gradients_at(q), side.inverse_transpose);
+    stress += sigma<dim>(*side.material, gradient) * side.side->stress_direction;
+    if (!is_axisymmetric_) continue;
+    const double u_r = fem::value_at<dim>(side.nodes, u, side.table->values_at(q))[0];
+    stress += side.material->lambda * hoop_strain(radius(side, q), u_r, gradient(0, 0)) *
               side.side->stress_direction;
+  }
   return stress - gamma_ * jump(u, q);
 }
 
 /// Column b is sigma(phi e_b) m - Gamma [phi e_b] = lambda (d_b phi) m + mu m_b grad phi + mu grad phi . m
 /// e_b
-/// - sign phi Gamma e_b, Gamma = gamma n n^T + gamma_t (I - n n^T).
+/// - sign phi Gamma e_b, Gamma = gamma n n^T + gamma_t (I - n n^T); on a meridian plus lambda phi / r m for
+/// b = r.
 template <int dim>
 Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, int q) const
 {
@@ -113,6 +147,9 @@ Tensor<dim> SegmentValues<dim>::augmented_derivative(const Side& side, int i, in
   Tensor<dim> block =
       side.material->lambda * m * gradient.transpose() + side.material->mu * gradient * m.transpose();
   block.diagonal().array() += side.material->mu * gradient.dot(m);
+  if (is_axisymmetric_)
+    block.col(0) +=
+        side.material->lambda * hoop_strain(radius(side, q), side.table->values_at(q)[i], gradient[0]) * m;
   block -= side.side->sign * side.table->values_at(q)[i] * gamma_;
   return block;
 }

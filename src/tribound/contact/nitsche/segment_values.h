@@ -52,12 +52,16 @@ class SegmentTables
 };
 
 /// P^p on a segment by values at the nodes of its Lagrange basis theta. It contains [u], {sigma(u)} and P(u)
-/// without the gap, so these are evaluated only at the nodes, which are fewer than the points of a rule.
+/// without the gap, so these are evaluated only at the nodes, which are fewer than the points of a rule. On a
+/// meridian u_r / r is no polynomial, and the nodes are the points.
 template <int dim>
 class SegmentNodes
 {
  public:
+  /// theta at the given points.
   SegmentNodes(int degree, std::span<const Point<dim - 1>> points);
+  /// The nodes are the points.
+  explicit SegmentNodes(std::span<const Point<dim - 1>> points);
 
   [[nodiscard]] std::span<const Point<dim - 1>> nodes() const { return nodes_; }
   /// (l, q): theta_l at point q.
@@ -75,6 +79,8 @@ class SegmentNodes
  private:
   // No Eigen matrices of dynamic size: their allocation depends on the instruction set for which a program is
   // compiled.
+  void multiply(int n_nodes);
+
   std::vector<Point<dim - 1>> nodes_;
   std::vector<double> values_;
   std::vector<double> products_;
@@ -107,6 +113,12 @@ class SegmentValues
   [[nodiscard]] Tensor<dim> augmented_derivative(const Side& side, int i, int q) const;
 
  private:
+  /// The distance from the axis of point q on a side.
+  [[nodiscard]] double radius(const Side& side, int q) const;
+
+  const mesh::Mesh<dim>& mesh_;
+  std::span<const Point<dim - 1>> points_;
+  bool is_axisymmetric_;
   Tensor<dim> gamma_;  ///< gamma n n^T + gamma_t (I - n n^T)
   std::array<Side, 2> sides_;
   std::size_t n_sides_;

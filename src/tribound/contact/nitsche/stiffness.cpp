@@ -7,6 +7,7 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/meridian_cells.h"
 #include "tribound/contact/nitsche/springs.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
@@ -73,10 +74,11 @@ class BlockRow
 {
  public:
   BlockRow(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-           const Springs<dim>* springs)
+           const Springs<dim>* springs, const MeridianCells* meridian)
       : problem_(&problem),
         space_(&space),
         springs_(springs),
+        meridian_(meridian),
         reference_(fem::gradient_products(space.basis())),
         index_(space.n_nodes(), -1)
   {
@@ -93,8 +95,7 @@ class BlockRow
       const mesh::CellMap<dim> map = mesh::cell_map(space_->mesh(), c);
       const problem::Material& material = problem_->material(space_->mesh().region(c));
       const std::span<const Index> nodes = space_->cell_nodes(c);
-      for (int j = 0; j < n; ++j)
-        blocks_[index_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
+      for (int j = 0; j < n; ++j) blocks_[index_[nodes[j]]] += block(c, i, j, material, map);
       if (const auto held = on_springs_.find(c); held != on_springs_.end())
         for (const SpringFacet<dim>* facet : held->second)
           for (int j = 0; j < n; ++j) blocks_[index_[nodes[j]]] += springs_->block(*facet, i, j);
@@ -118,9 +119,18 @@ class BlockRow
     blocks_.assign(neighbours_.size(), Tensor<dim>::Zero());
   }
 
+  [[nodiscard]] Tensor<dim> block(Index cell, int i, int j, const problem::Material& material,
+                                  const mesh::CellMap<dim>& map) const
+  {
+    if constexpr (dim == 2)
+      if (meridian_ != nullptr) return meridian_->stiffness_block(cell, i, j);
+    return stiffness_block(material, map, reference_[i * space_->basis().n_nodes() + j]);
+  }
+
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
   const Springs<dim>* springs_;                                                 ///< or null
+  const MeridianCells* meridian_;                                               ///< or null
   std::unordered_map<Index, std::vector<const SpringFacet<dim>*>> on_springs_;  ///< by cell
   std::vector<Tensor<dim>> reference_;
   std::vector<Index> index_;  ///< per node: its index among the neighbours, or -1
@@ -175,12 +185,14 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
   const Index n = space.n_owned_nodes();
   const int n_parts = std::clamp<int>(n / worth_a_thread, 1, max_threads());
   std::vector<algebra::SparseRows> parts(n_parts);
+  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
   const auto begin = [&](int part) { return static_cast<Index>(static_cast<long>(n) * part / n_parts); };
   in_threads(n_parts,
              [&](int part)
              {
-               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space, springs), space, cells,
-                                                 constraints, begin(part), begin(part + 1));
+               parts[part] = stiffness_rows<dim>(
+                   BlockRow<dim>(problem, space, springs, meridian ? &*meridian : nullptr), space, cells,
+                   constraints, begin(part), begin(part + 1));
              });
   algebra::SparseRows rows = std::move(parts.front());
   for (int part = 1; part < n_parts; ++part) rows.append(std::exchange(parts[part], {}));

@@ -101,7 +101,8 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
       const double measure = segment.measure * fem::fraction<dim - 1>(part);
       double largest = 0;
       for (const Point<dim - 1>& s : part)
-        largest = std::max(largest, tangential(jump(s) * (of_segment * z), map(s)).norm());
+        largest = std::max(
+            largest, form_.problem().weight(map(s)) * tangential(jump(s) * (of_segment * z), map(s)).norm());
       result.missed += 2 * strength * measure * largest;
       for (int q = 0; q < rule.size(); ++q)
       {
@@ -109,8 +110,8 @@ auto AssemblyCheck<dim>::strength_work(const MotionBasis& motions, const Eigen::
         const Eigen::MatrixXd jumps = jump(s) * of_segment;
         const Point<dim> z_t = tangential(jumps * z, map(s));
         if (z_t.norm() <= 1e-12 * z.norm()) continue;
-        const double force =
-            measure * mesh::factorial<dim - 1> * rule.weights[q] * problem::strength_at<dim>(law, map(s));
+        const double force = measure * mesh::factorial<dim - 1> * rule.weights[q] *
+                             form_.problem().weight(map(s)) * problem::strength_at<dim>(law, map(s));
         result.in_motions += force / z_t.norm() * (jumps.transpose() * z_t);
         result.most += force * z_t.norm();
       }
@@ -132,8 +133,9 @@ double AssemblyCheck<dim>::missed_work(const Eigen::VectorXd& motion) const
     {
       double size = 0;
       for (const Index v : vertices)
-        size = std::max(size,
-                        Point<dim>(assembly_.modes.at(mesh_.vertex(v)) * assembly_.part(motion, b)).norm());
+        size = std::max(
+            size, form_.problem().weight(mesh_.vertex(v)) *
+                      Point<dim>(assembly_.modes.at(mesh_.vertex(v)) * assembly_.part(motion, b)).norm());
       return size;
     };
     for (const Index c : body.cells)

@@ -39,7 +39,7 @@ bool better(const Fixing& a, const Fixing& b)
 class MeanGrams
 {
  public:
-  using Key = std::pair<int, int>;
+  using Key = std::pair<int, int>;  ///< boundary and body; pair and -1
 
   /// Adds rows for the given coefficients of motions, at one more point of `key`.
   template <class Rows>
@@ -91,11 +91,15 @@ std::string describe(const Remedy& remedy)
 template <int dim>
 Eigen::MatrixXd Support<dim>::fixed_gram() const
 {
+  constexpr int of_hoops = -2;  // no boundary has this number
   MeanGrams grams(assembly_.n_motions());
   for (int b = 0; b < static_cast<int>(assembly_.bodies.size()); ++b)
     for (const mesh::BoundaryFacet& facet : assembly_.bodies[b].facets)
     {
       const problem::BoundaryCondition<dim>& condition = problem_.boundary(facet.tag);
+      if (problem_.is_axisymmetric())  // hoop stress holds what moves away from the axis
+        for (const Index v : mesh::facet_vertices(mesh_.cell(facet.cell), facet.local))
+          grams.add({of_hoops, b}, assembly_.coefficients(b), assembly_.modes.at(mesh_.vertex(v)).row(0));
       if (!condition.holds_any()) continue;
       for_each_hold(condition, mesh_, facet, assembly_.modes,
                     [&](const auto& rows) {
