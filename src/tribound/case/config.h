@@ -183,6 +183,7 @@ struct Config
   std::string title;
   std::vector<std::string> not_covered;  ///< added to that of the certificate
   problem::Units units;                  ///< of [units]
+  bool is_axisymmetric = false;
   mesh::MeshSource mesh;
   std::vector<mesh::FormulaGroup> groups;  ///< that the mesh gets before anything is looked for in it
   std::vector<MaterialConfig> materials;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file seams.h
-/// Where the bodies of a mesh are not joined.
+/// Where the bodies of a mesh are not joined, and what else a case says of its mesh.
 
 #include <array>
 #include <functional>
@@ -24,6 +24,7 @@ struct Seams
 {
   std::vector<Interface> interfaces;
   std::vector<std::string> joints;  ///< groups of facets inside along which it is cut, see cut_open()
+  bool has_axis = false;            ///< it is the meridian of bodies of revolution, see meet_axis()
 };
 
 /// The seams of a mesh with these boundaries; may throw InputError.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -204,6 +205,8 @@ class Problem
   [[nodiscard]] bool is_axisymmetric() const { return is_axisymmetric_; }
   /// The weight of integrals at x: r of an axisymmetric problem, else 1.
   [[nodiscard]] double weight(const Point<dim>& x) const { return is_axisymmetric_ ? x[0] : 1.0; }
+  /// What such integrals are multiplied by for the whole body: 2 pi, else 1.
+  [[nodiscard]] double full_circle() const { return is_axisymmetric_ ? 2 * std::numbers::pi : 1.0; }
 
   [[nodiscard]] const Material& material(int region) const { return regions_[region].material; }
   /// f in the region; force per volume.

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "tribound/mesh/axis.h"
 #include "tribound/mesh/box.h"
 #include "tribound/mesh/cut_open.h"
 #include "tribound/mesh/import/bdf_check.h"
@@ -115,6 +116,7 @@ AnyMesh verified(std::variant<MeshData<2>, MeshData<3>> any, const FindSeams& fi
       {
         add_groups<dim>(data, groups);
         const Seams seams = find_seams ? find_seams(data.boundary_names) : Seams{};
+        if (seams.has_axis) meet_axis(data);
         cut_open<dim>(data, seams.joints);
         data.interfaces.insert(data.interfaces.end(), seams.interfaces.begin(), seams.interfaces.end());
         return Mesh<dim>(std::move(data));
