@@ -1,0 +1,97 @@
+#pragma once
+
+/// @file meridian_cell.h
+/// A cell of an axisymmetric problem with all that the patches around its vertices need of it.
+///
+/// The rows of tau = r sigma are of degree q = p + 1, multiples of r on cells with an edge on the axis. Their
+/// coefficients belong to the basis of Stress, phi_j / sqrt(det J); the first of these span P^p.
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tribound/base/dense_factors.h"
+#include "tribound/certify/equilibrate/sorted_cell.h"
+#include "tribound/contact/nitsche/nitsche.h"
+#include "tribound/fem/meridian_rules.h"
+
+namespace tribound::certify
+{
+
+/// Integrals on the reference triangle and the reference facet for the degree p of a space.
+struct MeridianReference
+{
+  explicit MeridianReference(int p);
+
+  int n_stress;      ///< dim P^q
+  int n_divergence;  ///< dim P^p
+  int n_facet;       ///< dim P^q of a facet
+  std::array<Eigen::MatrixXd, 2> derivative;    ///< d_k phi_j in P^p
+  std::array<Eigen::MatrixXd, 3> trace;         ///< phi_j on facet f, in its orthonormal basis theta
+  std::array<Eigen::MatrixXd, 3> hat;           ///< lambda_a phi_j in P^q for phi_j in P^p
+  std::array<Eigen::MatrixXd, 2> hat_on_facet;  ///< lambda_v theta_j in P^q for theta_j in P^p
+};
+
+/// Vertices ascend, as in SortedCell. `row` 0 is the radial one, 1 the axial one.
+struct MeridianCell
+{
+  SortedCell<2> sorted;
+  std::array<double, 3> r;  ///< of the vertices
+  bool has_edge_on_axis;
+  /// The coefficients of the basis in which a row is sought, component by component; empty: they are the
+  /// unknowns.
+  Eigen::MatrixXd basis;
+  CholeskyFactors mass;  ///< L L^T: the products (., . / r) of one component
+  // Of vector fields in that basis, both components, times L^{-T}:
+  Eigen::MatrixXd divergence;            ///< in P^p
+  std::array<Eigen::MatrixXd, 3> trace;  ///< normal traces
+  /// The inverse of (r ., .) on P^p.
+  Eigen::MatrixXd compliance;
+  double radius_integral;         ///< of r
+  Eigen::VectorXd radius_moment;  ///< of r on P^p
+  std::array<std::array<Eigen::VectorXd, 2>, 2> sigma;  ///< [row][component]: r sigma(u) in P^p
+  /// r div (r sigma_r(u)) - r sigma_tt(u) and div (r sigma_z(u)) in P^p
+  std::array<Eigen::VectorXd, 2> residual;
+  /// [row][vertex]: moments of psi_a r^2 f_r and psi_a r f_z on P^p
+  std::array<std::array<Eigen::VectorXd, 3>, 2> body;
+
+  [[nodiscard]] bool is_on_axis(int facet) const
+  {
+    return r[(facet + 1) % 3] == 0 && r[(facet + 2) % 3] == 0;
+  }
+};
+
+/// Prepares the cells of a form for the patches.
+class MeridianCells
+{
+ public:
+  /// The form must outlive the object.
+  explicit MeridianCells(const contact::NitscheForm<2>& form);
+
+  [[nodiscard]] const MeridianReference& reference() const { return reference_; }
+  /// Throws SolveError for a cell without volume. Any number of threads may call it.
+  [[nodiscard]] MeridianCell prepare(Index c, std::span<const double> u) const;
+
+ private:
+  static constexpr int n_permutations = 6;
+  /// phi at the points of a rule, row by row, for each permutation_number() of a cell in whose own coordinates
+  /// the points are given.
+  using Tables = std::array<Eigen::MatrixXd, n_permutations>;
+  [[nodiscard]] static Tables tabulate(int degree, const fem::Quadrature<2>& rule);
+
+  void find_operators(MeridianCell& cell, Index c, int permutation) const;
+  void find_stress(MeridianCell& cell, Index c, int permutation, std::span<const double> u) const;
+  void find_body_moments(MeridianCell& cell, Index c, int permutation) const;
+
+  const contact::NitscheForm<2>& form_;
+  MeridianReference reference_;
+  fem::MeridianRules rules_;
+  std::vector<Tables> phi_;  ///< P^q at the points of each of them
+  fem::Quadrature<2> stress_rule_;
+  Tables stress_phi_;                      ///< P^p at its points
+  fem::Tabulation<2> stress_tabulation_;  ///< the basis of the space there
+  Tables body_phi_;                        ///< P^p at the points of the rule of the loads
+};
+
+}  // namespace tribound::certify
