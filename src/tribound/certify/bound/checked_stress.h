@@ -76,6 +76,7 @@ class CheckedStress
     inverse_ = jacobian_.inverse();
   }
 
+  [[nodiscard]] int degree() const { return degree_; }
   /// The basis of P^{p-1}(T) at a point of space, up to the factor 1/sqrt(det J).
   void truncated_basis_at(const Point<dim>& x, std::span<double> values) const
   {

@@ -7,6 +7,7 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/checked_stress.h"
+#include "tribound/certify/bound/radial_projection.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/shared_facets.h"
 
@@ -24,31 +25,61 @@ double IdentityDefects::largest() const
 namespace
 {
 
-/// ||div sigma_h + Pi^{p-1} f - rho||_T^2; div sigma_h and rho are of degree p-1. The points of the rule
-/// follow the numbering of the cell, in which f is given; rho is given by its values at the vertices.
+/// Whether a facet lies on the axis of an axisymmetric problem.
 template <int dim>
-double squared_divergence_defect(const contact::DiscreteData<dim>& data, Index cell,
+bool is_on_axis(const contact::NitscheForm<dim>& form, Index cell, int local)
+{
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  return form.problem().is_axisymmetric() &&
+         std::ranges::all_of(mesh::facet_vertices(mesh.cell(cell), local),
+                             [&](Index v) { return mesh.vertex(v)[0] == 0; });
+}
+
+template <int dim>
+bool has_facet_on_axis(const contact::NitscheForm<dim>& form, Index cell)
+{
+  for (int local = 0; local <= dim; ++local)
+    if (is_on_axis(form, cell, local)) return true;
+  return false;
+}
+
+/// ||div sigma_h + Pi^{p-1} f - rho||_T^2; div sigma_h and rho are of degree p-1. The points of the rule
+/// follow the numbering of the cell, in which f is given; rho is given by its values at the vertices. Of the
+/// radial row of an axisymmetric problem the divergence is no identity, but the hoop stress.
+template <int dim>
+double squared_divergence_defect(const contact::NitscheForm<dim>& form, Index cell,
                                  const CheckTables<dim>& tables, const CheckedStress<dim>& sigma,
                                  const mesh::CellMap<dim>& map, const std::array<Point<dim>, dim + 1>* rho)
 {
+  const contact::DiscreteData<dim>& data = form.data();
   std::vector<Point<dim>> moments = sigma.divergence(tables);
   if (data.has_body_force(cell) || rho)
   {
+    const fem::Quadrature<dim>& rule = data.cell_rule();
+    const bool on_axis = has_facet_on_axis(form, cell);
+    std::vector<Point<dim>> at_axis(tables.n_less, Point<dim>::Zero());
+    std::vector<Point<dim>>& load = on_axis ? at_axis : moments;
+    RadialProjection<dim> projection(sigma.degree() - 1);
     std::vector<double> chi(tables.n_less);
-    std::vector<Point<dim>> f(tables.data_rule.size(), Point<dim>::Zero());
+    std::vector<Point<dim>> f(rule.size(), Point<dim>::Zero());
     if (data.has_body_force(cell)) data.body_force(cell, f);
-    for (int q = 0; q < tables.data_rule.size(); ++q)
+    for (int q = 0; q < rule.size(); ++q)
     {
-      const Point<dim>& x = tables.data_rule.points[q];
+      const Point<dim>& x = rule.points[q];
       if (rho) f[q] -= (1 - x.sum()) * (*rho)[0];
       for (int i = 0; rho && i < dim; ++i) f[q] -= x[i] * (*rho)[i + 1];
       sigma.truncated_basis_at(map(x), chi);
-      for (int i = 0; i < tables.n_less; ++i)
-        moments[i] += tables.data_rule.weights[q] * std::sqrt(map.det) * chi[i] * f[q];
+      const double weight = rule.weights[q] * form.problem().weight(map(x));
+      for (int i = 0; i < tables.n_less; ++i) load[i] += weight * std::sqrt(map.det) * chi[i] * f[q];
+      if (on_axis) projection.add(chi, weight);
     }
+    if constexpr (dim == 2)
+      if (on_axis) projection.apply(load);
+    for (int i = 0; on_axis && i < tables.n_less; ++i) moments[i] += load[i];
   }
   double sum = 0;
-  for (const Point<dim>& moment : moments) sum += moment.squaredNorm();
+  for (const Point<dim>& moment : moments)
+    sum += form.problem().is_axisymmetric() ? moment[1] * moment[1] : moment.squaredNorm();
   return sum;
 }
 
@@ -62,11 +93,10 @@ double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& str
   {
     const auto c = static_cast<Index>(cell);
     const CheckedStress<dim> sigma(mesh, stress, c);
-    return Eigen::Array3d(
-        sigma.squared_norm(), sigma.squared_skew_part(tables.n_less),
-        std::pow(mesh::cell_diameter(mesh, c), 2) *
-            squared_divergence_defect(form.data(), c, tables, sigma, mesh::cell_map(mesh, c),
-                                      rho.empty() ? nullptr : &rho[cell]));
+    return Eigen::Array3d(sigma.squared_norm(), sigma.squared_skew_part(tables.n_less),
+                          std::pow(mesh::cell_diameter(mesh, c), 2) *
+                              squared_divergence_defect(form, c, tables, sigma, mesh::cell_map(mesh, c),
+                                                        rho.empty() ? nullptr : &rho[cell]));
   };
   const Eigen::Array3d sums =
       parallel_sum<Eigen::Array3d>(mesh.n_owned_cells(), Eigen::Array3d::Zero(), of_cell);
@@ -174,8 +204,29 @@ class FacetMoments
   std::vector<double> theta_;
 };
 
+/// From the moments of r g to those of r Pi g on the facets of an axisymmetric problem off the axis.
+void project_by_radius(const contact::NitscheForm<2>& form, int degree,
+                       std::span<std::vector<Point<2>>> moments)
+{
+  const mesh::Mesh<2>& mesh = form.space().mesh();
+  const fem::Quadrature<1>& rule = form.facet_rule();
+  for (std::size_t number = 0; number < moments.size(); ++number)
+  {
+    if (moments[number].empty()) continue;
+    const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+    RadialProjection<1> projection(degree);
+    std::vector<double> theta(moments[number].size());
+    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+    {
+      fem::orthonormal_values<1>(degree, rule.points[q], theta);
+      projection.add(theta, rule.weights[q] * x[0]);
+    }
+    projection.apply(moments[number]);
+  }
+}
+
 /// The moments of the traction on each boundary facet: g_N - K (u - u_0), t^k on slaves, -t^k on masters.
-/// Empty: no traction.
+/// Empty: no traction. Of axisymmetric problems: r times the projections with the weight r.
 template <int dim>
 std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheForm<dim>& form,
                                                         std::span<const Point<dim>> t,
@@ -200,7 +251,7 @@ std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheFo
       for (int q = 0; q < rule.size(); ++q) g[q] += springs[first + q];
     }
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      on_facet.add(rule.points[q], dx, g[q], moments[number]);
+      on_facet.add(rule.points[q], form.problem().weight(x) * dx, g[q], moments[number]);
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side(
@@ -212,7 +263,19 @@ std::vector<std::vector<Point<dim>>> prescribed_moments(const contact::NitscheFo
             on_facet.add(side.on_facet(rule.points[q]), side.sign * form.contact_points(k)[q].weight,
                          t[k * rule.size() + q], moments[side.number]);
         });
+  if constexpr (dim == 2)
+    if (form.problem().is_axisymmetric()) project_by_radius(form, degree, moments);
   return moments;
+}
+
+/// The square of the stress on a facet that lies on the axis, where tau = 0.
+double squared_on_axis(const mesh::Mesh<2>& mesh, const mesh::BoundaryFacet& facet,
+                       const fem::Quadrature<1>& rule, const CheckedStress<2>& tau)
+{
+  double sum = 0;
+  for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+    for (int k = 0; k < 2; ++k) sum += dx * tau.normal_trace_at(x, Point<2>::Unit(k)).squaredNorm();
+  return sum;
 }
 
 /// sum h_F ||Pi^p_F (sigma_h n) - prescribed||_F^2 over the free components.
@@ -232,6 +295,12 @@ void check_boundary(const contact::NitscheForm<dim>& form, std::span<const Point
     const problem::BoundaryCondition<dim>& boundary = form.problem().boundary(facet.tag);
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
     const CheckedStress<dim> sigma(mesh, stress, facet.cell);
+    if constexpr (dim == 2)
+      if (is_on_axis(form, facet.cell, facet.local))
+      {
+        squares.jump += geometry.diameter * squared_on_axis(mesh, facet, rule, sigma);
+        continue;
+      }
     FacetMoments<dim> on_facet(mesh, facet, stress.degree);
     std::vector<Point<dim>> moments = on_facet.none();
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tribound/certify/equilibrate/meridian_equilibrator.h"
 #include "tribound/certify/equilibrate/mesh_equilibrator.h"
 #include "tribound/fem/degree.h"
 
@@ -42,6 +43,12 @@ Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, PatchStre
   form.space().mesh().ranks().together(
       [&]
       {
+        if constexpr (dim == 2)
+          if (form.problem().is_axisymmetric())
+          {
+            implementation_ = make_meridian_equilibrator(form, n_threads);
+            return;
+          }
         fem::with_degree(form.space().degree(),
                          [&](auto p)
                          {

@@ -65,7 +65,7 @@ MeridianReference::MeridianReference(int p)
   }
 }
 
-MeridianCells::MeridianCells(const contact::NitscheForm<2>& form)
+MeridianCellSource::MeridianCellSource(const contact::NitscheForm<2>& form)
     : form_(form),
       reference_(form.space().degree()),
       rules_(form.space().mesh(), 2 * form.space().degree() + 2),
@@ -77,7 +77,7 @@ MeridianCells::MeridianCells(const contact::NitscheForm<2>& form)
   for (int i = 0; i < rules_.size(); ++i) phi_.push_back(tabulate(form.space().degree() + 1, rules_[i]));
 }
 
-MeridianCells::Tables MeridianCells::tabulate(int degree, const fem::Quadrature<2>& rule)
+MeridianCellSource::Tables MeridianCellSource::tabulate(int degree, const fem::Quadrature<2>& rule)
 {
   Tables tables;
   std::array<int, 3> local = {0, 1, 2};
@@ -86,13 +86,12 @@ MeridianCells::Tables MeridianCells::tabulate(int degree, const fem::Quadrature<
     Eigen::MatrixXd& table = tables[permutation_number(local)];
     table.resize(rule.size(), fem::polynomial_dimension(2, degree));
     for (int i = 0; i < rule.size(); ++i)
-      table.row(i) =
-          orthonormal_basis_at<2>(degree, to_sorted_cell<2>(local, rule.points[i])).transpose();
+      table.row(i) = orthonormal_basis_at<2>(degree, to_sorted_cell<2>(local, rule.points[i])).transpose();
   } while (std::ranges::next_permutation(local).found);
   return tables;
 }
 
-MeridianCell MeridianCells::prepare(Index c, std::span<const double> u) const
+MeridianCell MeridianCellSource::prepare(Index c, std::span<const double> u) const
 {
   MeridianCell cell;
   cell.sorted = make_sorted_cell(form_.space().mesh(), c);
@@ -104,7 +103,7 @@ MeridianCell MeridianCells::prepare(Index c, std::span<const double> u) const
   return cell;
 }
 
-void MeridianCells::find_operators(MeridianCell& cell, Index c, int permutation) const
+void MeridianCellSource::find_operators(MeridianCell& cell, Index c, int permutation) const
 {
   const SortedCell<2>& sorted = cell.sorted;
   const int m = reference_.n_divergence;
@@ -135,7 +134,8 @@ void MeridianCells::find_operators(MeridianCell& cell, Index c, int permutation)
   };
   std::array<Eigen::MatrixXd, 2> components;
   for (int k = 0; k < 2; ++k)
-    components[k] = sorted.inverse(0, k) * reference_.derivative[0] + sorted.inverse(1, k) * reference_.derivative[1];
+    components[k] =
+        sorted.inverse(0, k) * reference_.derivative[0] + sorted.inverse(1, k) * reference_.derivative[1];
   cell.divergence = reduced(components);
   for (int f = 0; f < 3; ++f)
   {
@@ -151,7 +151,8 @@ void MeridianCells::find_operators(MeridianCell& cell, Index c, int permutation)
 }
 
 /// r sigma and r sigma_tt are polynomials of degree p, of which nothing need be divided by r.
-void MeridianCells::find_stress(MeridianCell& cell, Index c, int permutation, std::span<const double> u) const
+void MeridianCellSource::find_stress(MeridianCell& cell, Index c, int permutation,
+                                     std::span<const double> u) const
 {
   const fem::LagrangeSpace<2>& space = form_.space();
   const problem::Material& material = form_.problem().material(space.mesh().region(c));
@@ -177,14 +178,15 @@ void MeridianCells::find_stress(MeridianCell& cell, Index c, int permutation, st
     cell.residual[row] = Eigen::VectorXd::Zero(m);
     for (int k = 0; k < 2; ++k)
       for (int l = 0; l < 2; ++l)
-        cell.residual[row] += cell.sorted.inverse(l, k) * (reference_.derivative[l].leftCols(m) * cell.sigma[row][k]);
+        cell.residual[row] +=
+            cell.sorted.inverse(l, k) * (reference_.derivative[l].leftCols(m) * cell.sigma[row][k]);
   }
   Eigen::VectorXd times_r = Eigen::VectorXd::Zero(m);
   for (int a = 0; a < 3; ++a) times_r += cell.r[a] * (reference_.hat[a].topRows(m) * cell.residual[0]);
   cell.residual[0] = times_r - hoop;
 }
 
-void MeridianCells::find_body_moments(MeridianCell& cell, Index c, int permutation) const
+void MeridianCellSource::find_body_moments(MeridianCell& cell, Index c, int permutation) const
 {
   for (auto& row : cell.body) row.fill(Eigen::VectorXd::Zero(reference_.n_divergence));
   if (!form_.data().has_body_force(c)) return;
@@ -204,6 +206,11 @@ void MeridianCells::find_body_moments(MeridianCell& cell, Index c, int permutati
       cell.body[1][a] += lambda[a] * f[i][1] * weighted;
     }
   }
+  if (!cell.has_edge_on_axis) return;
+  const int n = fem::polynomial_dimension(2, form_.space().degree() - 1);
+  const CholeskyFactors radius(cell.basis.topLeftCorner(n, n));
+  for (Eigen::VectorXd& moments : cell.body[1])
+    moments = cell.basis.topLeftCorner(moments.size(), n) * radius.solve(moments.head(n));
 }
 
 }  // namespace tribound::certify

@@ -24,9 +24,9 @@ struct MeridianReference
 {
   explicit MeridianReference(int p);
 
-  int n_stress;      ///< dim P^q
-  int n_divergence;  ///< dim P^p
-  int n_facet;       ///< dim P^q of a facet
+  int n_stress;                                 ///< dim P^q
+  int n_divergence;                             ///< dim P^p
+  int n_facet;                                  ///< dim P^q of a facet
   std::array<Eigen::MatrixXd, 2> derivative;    ///< d_k phi_j in P^p
   std::array<Eigen::MatrixXd, 3> trace;         ///< phi_j on facet f, in its orthonormal basis theta
   std::array<Eigen::MatrixXd, 3> hat;           ///< lambda_a phi_j in P^q for phi_j in P^p
@@ -48,12 +48,14 @@ struct MeridianCell
   std::array<Eigen::MatrixXd, 3> trace;  ///< normal traces
   /// The inverse of (r ., .) on P^p.
   Eigen::MatrixXd compliance;
-  double radius_integral;         ///< of r
-  Eigen::VectorXd radius_moment;  ///< of r on P^p
+  double radius_integral;                               ///< of r
+  Eigen::VectorXd radius_moment;                        ///< of r on P^p
   std::array<std::array<Eigen::VectorXd, 2>, 2> sigma;  ///< [row][component]: r sigma(u) in P^p
   /// r div (r sigma_r(u)) - r sigma_tt(u) and div (r sigma_z(u)) in P^p
   std::array<Eigen::VectorXd, 2> residual;
-  /// [row][vertex]: moments of psi_a r^2 f_r and psi_a r f_z on P^p
+  /// [row][vertex]: moments on P^p of psi_a r^2 f_r and of psi_a r f_z. On cells with an edge on the axis the
+  /// latter are those of r w, w the projection with the weight r of psi_a f_z onto P^{p-1}: div tau_z can
+  /// then be divided by r.
   std::array<std::array<Eigen::VectorXd, 3>, 2> body;
 
   [[nodiscard]] bool is_on_axis(int facet) const
@@ -63,11 +65,11 @@ struct MeridianCell
 };
 
 /// Prepares the cells of a form for the patches.
-class MeridianCells
+class MeridianCellSource
 {
  public:
   /// The form must outlive the object.
-  explicit MeridianCells(const contact::NitscheForm<2>& form);
+  explicit MeridianCellSource(const contact::NitscheForm<2>& form);
 
   [[nodiscard]] const MeridianReference& reference() const { return reference_; }
   /// Throws SolveError for a cell without volume. Any number of threads may call it.
@@ -75,8 +77,8 @@ class MeridianCells
 
  private:
   static constexpr int n_permutations = 6;
-  /// phi at the points of a rule, row by row, for each permutation_number() of a cell in whose own coordinates
-  /// the points are given.
+  /// phi at the points of a rule, row by row, for each permutation_number() of a cell in whose own
+  /// coordinates the points are given.
   using Tables = std::array<Eigen::MatrixXd, n_permutations>;
   [[nodiscard]] static Tables tabulate(int degree, const fem::Quadrature<2>& rule);
 
@@ -89,9 +91,9 @@ class MeridianCells
   fem::MeridianRules rules_;
   std::vector<Tables> phi_;  ///< P^q at the points of each of them
   fem::Quadrature<2> stress_rule_;
-  Tables stress_phi_;                      ///< P^p at its points
+  Tables stress_phi_;                     ///< P^p at its points
   fem::Tabulation<2> stress_tabulation_;  ///< the basis of the space there
-  Tables body_phi_;                        ///< P^p at the points of the rule of the loads
+  Tables body_phi_;                       ///< P^p at the points of the rule of the loads
 };
 
 }  // namespace tribound::certify

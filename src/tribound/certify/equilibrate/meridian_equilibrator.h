@@ -1,0 +1,16 @@
+#pragma once
+
+/// @file meridian_equilibrator.h
+/// The implementation of Equilibrator for axisymmetric problems: Stress has tau = r sigma, of degree p + 1.
+
+#include <memory>
+
+#include "tribound/certify/equilibrate/mesh_equilibrator.h"
+
+namespace tribound::certify
+{
+
+[[nodiscard]] std::unique_ptr<Equilibrator<2>::Implementation> make_meridian_equilibrator(
+    const contact::NitscheForm<2>& form, int n_threads);
+
+}  // namespace tribound::certify
