@@ -78,10 +78,10 @@ std::array<fem::Part<k>, 2> halves(const fem::Part<k>& part, const SimplexMap<k,
 }  // namespace
 
 template <int k, int dim, int n>
-DatumMoments<k, dim, n>::DatumMoments(int p, int projected)
+DatumMoments<k, dim, n>::DatumMoments(int p, int projected, int exact)
     : p_(p),
       n_projected_(fem::polynomial_dimension(k, projected)),
-      rule_(fem::quadrature<k>(fem::data_quadrature_degree(p))),
+      rule_(fem::quadrature<k>(exact)),
       n_theta_(fem::polynomial_dimension(k, p + 1)),
       theta_(static_cast<std::size_t>(n_theta_) * rule_.size())
 {
@@ -128,7 +128,7 @@ template <int k, int dim, int n>
 void DatumMoments<k, dim, n>::enclose(const Datum<dim, n>& datum, const SimplexMap<k, dim>& map,
                                       DatumPart<k, n>& part) const
 {
-  // One less than the degree of the rule: moments against affine weights are integrated as well.
+  // Less than the degree of the rule: moments against affine weights are integrated as well.
   const int order = std::min(fem::data_quadrature_degree(p_), problem::Formula::max_order);
   std::array<problem::Enclosure, problem::Formula::max_order + 1> storage;
   const auto taylor = std::span(storage).first(order + 1);

@@ -52,13 +52,16 @@ struct DatumWeights
   double mean;
 };
 
-/// Computes moments of data for degree p of the method, with the rule exact to data_quadrature_degree(p).
+/// Computes moments of data for degree p of the method, with a rule exact to data_quadrature_degree(p) or
+/// more.
 template <int k, int dim, int n = dim>
 class DatumMoments
 {
  public:
   /// Oscillations are relative to P^projected.
-  DatumMoments(int p, int projected);
+  DatumMoments(int p, int projected) : DatumMoments(p, projected, fem::data_quadrature_degree(p)) {}
+  /// With a rule exact to the given degree.
+  DatumMoments(int p, int projected, int exact);
 
   /// Polynomials of degree <= p + 2 are integrated by the rule as it is. Others are subdivided until what is
   /// left out costs at most `allowed`, but into no more than about `max_parts` parts, unless the formula is

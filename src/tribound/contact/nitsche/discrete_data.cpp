@@ -23,6 +23,13 @@ constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts_of_facet = 4096;
 
+/// The degree to which the rules are exact. With the weight r there are products with r, and quotients by it.
+template <int dim>
+int exactness(const problem::Problem<dim>& problem, int degree)
+{
+  return fem::data_quadrature_degree(problem.is_axisymmetric() ? degree + 4 : degree);
+}
+
 /// A lower bound of the gap on the parts of a segment; -HUGE_VAL if there is none.
 template <int dim>
 double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& map,
@@ -63,9 +70,9 @@ DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh
     : problem_(problem),
       mesh_(mesh),
       degree_(degree),
-      cell_moments_(degree, degree - 1),
-      facet_moments_(degree, degree),
-      contact_moments_(degree, degree),
+      cell_moments_(degree, problem.is_axisymmetric() ? degree + 1 : degree - 1, exactness(problem, degree)),
+      facet_moments_(degree, degree, exactness(problem, degree)),
+      contact_moments_(degree, degree, exactness(problem, degree)),
       size_(mesh::box_around(mesh).diagonal())
 {
   count_formulas(segments);
@@ -272,6 +279,23 @@ void DiscreteData<dim>::body_force(Index cell, std::span<Point<dim>> values) con
   const Datum<dim> datum = body_datum(problem_, mesh_, cell);
   const SimplexMap<dim, dim> map = simplex_map(mesh_, cell);
   for (int q = 0; q < cell_rule().size(); ++q) values[q] = datum(map(cell_rule().points[q]));
+}
+
+template <int dim>
+std::vector<Point<dim>> DiscreteData<dim>::body_polynomial(Index cell) const
+{
+  const int degree = problem_.body_force_is_constant(mesh_.region(cell)) ? 0 : degree_ + 6;
+  std::vector<Point<dim>> values(cell_rule().size());
+  body_force(cell, values);
+  std::vector<double> theta(fem::polynomial_dimension(dim, degree));
+  std::vector<Point<dim>> coefficients(theta.size(), Point<dim>::Zero());
+  for (int q = 0; q < cell_rule().size(); ++q)
+  {
+    fem::orthonormal_values<dim>(degree, cell_rule().points[q], theta);
+    for (std::size_t j = 0; j < theta.size(); ++j)
+      coefficients[j] += cell_rule().weights[q] * theta[j] * values[q];
+  }
+  return coefficients;
 }
 
 template <int dim>

@@ -24,7 +24,8 @@ namespace tribound::contact
 /// What is lost when a load on one cell or facet is replaced by its values at the points of a rule.
 struct LoadRemainder
 {
-  double oscillation = 0;  ///< >= ||f - Pi f||: P^{p-1} on cells, P^p on facets
+  /// >= ||f - Pi f||: P^{p-1} on cells, P^p on facets; on cells of axisymmetric problems >= ||f - f_h||.
+  double oscillation = 0;
   double mean = 0;  ///< >= |integral of f - its value by the rule|, also times affine weights of size 1
 };
 
@@ -65,12 +66,13 @@ struct DataEffort
   std::int64_t unenclosed = 0;  ///< cells and facets with functions that are known only at points
 };
 
-/// Values are given at the points of the rules exact to data_quadrature_degree(p), in the order of the rule
-/// in the reference coordinates of Mesh::cell; on contact segments in their own coordinates. If a formula is
-/// subdivided, they are those of the polynomial of degree p + 1 with the same moments. A threshold is not
-/// below 0, and a gap not below its smallest value: its polynomial is made flatter, with the same mean.
-/// Boundary facets have their numbers in Mesh::boundary(). Keeps references to problem and mesh. Several
-/// ranks construct it together; ghosts have data, too.
+/// Values are given at the points of the rules exact to data_quadrature_degree(p), of axisymmetric problems
+/// data_quadrature_degree(p + 4), in the order of the rule in the reference coordinates of Mesh::cell; on
+/// contact segments in their own coordinates. If a formula is subdivided, they are those of the polynomial of
+/// degree p + 1 with the same moments. A threshold is not below 0, and a gap not below its smallest value:
+/// its polynomial is made flatter, with the same mean. Boundary facets have their numbers in
+/// Mesh::boundary(). Keeps references to problem and mesh. Several ranks construct it together; ghosts have
+/// data, too.
 template <int dim>
 class DiscreteData
 {
@@ -95,6 +97,9 @@ class DiscreteData
   }
   /// f on a cell.
   void body_force(Index cell, std::span<Point<dim>> values) const;
+  /// Of an axisymmetric problem: f_h on a cell, which has these values, in the orthonormal basis of P^{p+6}
+  /// of the reference cell; of a constant f only the first coefficient.
+  [[nodiscard]] std::vector<Point<dim>> body_polynomial(Index cell) const;
   /// g_N on a boundary facet; fixed components are 0.
   void traction(std::size_t facet, std::span<Point<dim>> values) const;
   /// The data at the point with coordinates s on segment k.
