@@ -7,6 +7,7 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/base/parallel.h"
+#include "tribound/certify/bound/weights.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/mesh/geometry.h"
 
@@ -139,6 +140,25 @@ RigidField<dim> AlgebraicResidual<dim>::rigid_force(Index vertex, const Forces& 
 }
 
 template <int dim>
+RigidField<dim> AlgebraicResidual<dim>::axial_force(Index vertex, const Forces& forces) const
+{
+  const mesh::Mesh<dim>& mesh = form_.space().mesh();
+  RigidField<dim> rho{Point<dim>::Zero(), Tensor<dim>::Zero()};
+  for (Index k = fixed_begin_[vertex]; k < fixed_begin_[vertex + 1]; ++k)
+    if (fixed_[k].fixed[1]) return rho;
+  double volume = 0;
+  const std::span<const Index> begin = mesh.topology().vertex_cells_begin;
+  for (Index k = begin[vertex]; k < begin[vertex + 1]; ++k)
+  {
+    const Index cell = mesh.topology().vertex_cells[k];
+    volume += mesh::cell_map(mesh, cell).measure() *
+              mean_weight<dim>(form_.problem(), mesh::points_of(mesh.vertices(), mesh.cell(cell)));
+  }
+  rho.translation[1] = forces.sum[1] / volume;
+  return rho;
+}
+
+template <int dim>
 AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> residual,
                                                      PatchStress patches) const
 {
@@ -151,8 +171,10 @@ AffineFields<dim> AlgebraicResidual<dim>::body_force(std::span<const double> res
   parallel_for(at_vertex.size(),
                [&](std::size_t v)
                {
-                 if (mesh.has_patch(static_cast<Index>(v)))
-                   at_vertex[v] = rigid_force(static_cast<Index>(v), forces[v], constant);
+                 const auto vertex = static_cast<Index>(v);
+                 if (!mesh.has_patch(vertex)) return;
+                 at_vertex[v] = form_.problem().is_axisymmetric() ? axial_force(vertex, forces[v])
+                                                                  : rigid_force(vertex, forces[v], constant);
                });
   AffineFields<dim> rho(mesh.n_owned_cells());
   parallel_for(rho.size(),

@@ -6,6 +6,7 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/algebraic.h"
+#include "tribound/certify/bound/weights.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -158,16 +159,25 @@ std::array<double, 2> squares_on_cell(const std::array<Point<dim>, dim + 1>& rho
 }  // namespace
 
 template <int dim>
-double field_norm(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho)
+double field_norm(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                  const AffineFields<dim>& rho)
 {
   const auto square = [&](std::size_t c)
-  { return squares_on_cell<dim>(rho[c], mesh::cell_map(mesh, static_cast<Index>(c)).measure())[1]; };
+  {
+    const auto cell = static_cast<Index>(c);
+    // rho of an axisymmetric problem is constant on each cell.
+    const double weight = mean_weight<dim>(problem, mesh::points_of(mesh.vertices(), mesh.cell(cell)));
+    return weight * squares_on_cell<dim>(rho[c], mesh::cell_map(mesh, cell).measure())[1];
+  };
   return std::sqrt(mesh.ranks().sum(parallel_sum(rho.size(), 0.0, square)));
 }
 
 template <int dim>
-double algebraic_error(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho, double friedrichs)
+double algebraic_error(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                       const AffineFields<dim>& rho, double friedrichs)
 {
+  const double whole = friedrichs * field_norm<dim>(problem, mesh, rho);
+  if (problem.is_axisymmetric()) return whole;
   const Forest<dim> forest(mesh, rho);
   std::vector<double> squares = TreeSums<dim>(mesh, forest).squares();
   double means = 0;
@@ -186,12 +196,14 @@ double algebraic_error(const mesh::Mesh<dim>& mesh, const AffineFields<dim>& rho
   double tree = friedrichs * std::sqrt(squares.back());
   squares.pop_back();
   for (const double square : squares) tree += std::sqrt(square);
-  return std::min(tree, friedrichs * field_norm<dim>(mesh, rho));
+  return std::min(tree, whole);
 }
 
-template double field_norm(const mesh::Mesh<2>&, const AffineFields<2>&);
-template double field_norm(const mesh::Mesh<3>&, const AffineFields<3>&);
-template double algebraic_error(const mesh::Mesh<2>&, const AffineFields<2>&, double);
-template double algebraic_error(const mesh::Mesh<3>&, const AffineFields<3>&, double);
+template double field_norm(const problem::Problem<2>&, const mesh::Mesh<2>&, const AffineFields<2>&);
+template double field_norm(const problem::Problem<3>&, const mesh::Mesh<3>&, const AffineFields<3>&);
+template double algebraic_error(const problem::Problem<2>&, const mesh::Mesh<2>&, const AffineFields<2>&,
+                                double);
+template double algebraic_error(const problem::Problem<3>&, const mesh::Mesh<3>&, const AffineFields<3>&,
+                                double);
 
 }  // namespace tribound::certify

@@ -41,6 +41,17 @@ template <int dim>
   return h * std::sqrt(measure / volume * trace_constant_squared<dim>());
 }
 
+/// The same with the weight r on a meridian: (int_F r (v - m)^2)^{1/2} <= C (int_T r |grad v|^2)^{1/2}, m the
+/// mean with weight r over T or over F. With the vertex a opposite to F, div(r (x - a)) = 3 r - a_r <= 3 r,
+/// so H int_F r w^2 <= 3 ||w||^2 + 2 h_T ||w|| ||grad w||, H = 2 |T|/|F|; in w = v - mean_T(v), ||w|| <= h_T
+/// / pi
+/// ||grad w|| also with this weight, because r is log-concave.
+[[nodiscard]] inline double meridian_trace_constant(double h, double measure, double volume)
+{
+  constexpr double pi = std::numbers::pi;
+  return h * std::sqrt(measure / (2 * volume) * (3 / (pi * pi) + 2 / pi));
+}
+
 /// ||w - r||_T <= cell ||eps(w)||_T and ||w - r||_F <= facets[i] ||eps(w)||_T on the facet F opposite to
 /// vertex i, r the nearest rigid motion each time, on Hill's simplex with the vertices 0, v_1, v_1 + v_2,
 /// ..., |v_i| = 1 and v_i . v_j = gram for all i != j. With the rigid motion nearest on T, ||w - r|| has the

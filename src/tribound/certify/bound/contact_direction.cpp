@@ -19,20 +19,25 @@ void ContactTerms<dim>::add_varying_traction(int k, std::span<const Point<dim>> 
   double normal = 0;
   double tangential = 0;
   double whole = 0;
+  const bool scaled = is_scaled(k);
   for (int q = 0; q < form_.n_segment_points(); ++q)
   {
+    const contact::ContactPoint<dim>& point = form_.contact_points(k)[q];
     Point<dim> t = Point<dim>::Zero();
     for (std::size_t i = 0; i < coefficients.size(); ++i) t += theta_[q * n_ + i] * coefficients[i];
-    const Point<dim>& n = form_.contact_points(k)[q].normal;
+    t /= scale(scaled, point.x);
+    const Point<dim>& n = point.normal;
     const double t_n = t.dot(n);
-    const double weight = norm_scale(segment) * form_.facet_rule().weights[q];
+    const double weight =
+        norm_scale(segment) * form_.facet_rule().weights[q] * form_.problem().weight(point.x);
     normal += weight * t_n * t_n;
     tangential += weight * (t - t_n * n).squaredNorm();
     whole += weight * t.squaredNorm();
   }
-  const problem::NormalDeviation off =
-      deviation_on<dim>(contact::simplex_map(form_.space().mesh(), segment.slave), *segment.varying_normal,
-                        fem::reference_simplex<dim - 1>());
+  problem::NormalDeviation off{};
+  if (segment.varying_normal != nullptr)
+    off = deviation_on<dim>(contact::simplex_map(form_.space().mesh(), segment.slave),
+                            *segment.varying_normal, fem::reference_simplex<dim - 1>());
   normal_part += std::pow(std::sqrt(normal) + 2 * off.quadratic * std::sqrt(whole), 2);
   tangential_part +=
       std::pow(std::sqrt(tangential) + 2 * tangential_deviation<dim>(off) * std::sqrt(whole), 2);
@@ -40,7 +45,8 @@ void ContactTerms<dim>::add_varying_traction(int k, std::span<const Point<dim>> 
 
 template <int dim>
 void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
-                                   std::span<const Point<dim>> dis, Integrals& integrals) const
+                                   std::span<const Point<dim>> dis, std::span<const double> weights,
+                                   Integrals& integrals) const
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const problem::NormalDeviation& off = integrals.of_normal;
@@ -49,9 +55,8 @@ void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Po
   double largest = 0;
   for (std::size_t q = 0; q < augmented.size(); ++q)
   {
-    const double weight = fem::fraction<dim - 1>(piece) * form_.facet_rule().weights[q];
-    of_augmented += weight * augmented[q].squaredNorm();
-    of_dis += weight * dis[q].squaredNorm();
+    of_augmented += weights[q] * augmented[q].squaredNorm();
+    of_dis += weights[q] * dis[q].squaredNorm();
     largest = std::max(largest, augmented[q].norm());
   }
   // Between bodies the distance of the meshes along N is part of P^n: that of polynomials of degree 1.
@@ -79,10 +84,11 @@ void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
   // A jump of N is a point in 2D, where halving is cheap, and a curve in 3D.
   constexpr int deepest = dim == 2 ? 30 : 3;
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure;
+  const double allowed = std::pow(form_.data().contact_density(), 2) * segment.measure *
+                         largest_on(k, fem::reference_simplex<dim - 1>()).weight;
   const auto is_enough = [&](const Part& part)
   {
-    const Missed& missed = is_open(segment, part) ? part.integrals.missed_open : part.integrals.missed;
+    const Missed& missed = is_open(k, part) ? part.integrals.missed_open : part.integrals.missed;
     return norm_scale(segment) * (missed.normal + missed.tangential) <=
            allowed * fem::fraction<dim - 1>(part.data.part);
   };
@@ -114,11 +120,13 @@ void ContactTerms<dim>::resolve_normal(int k, std::vector<Part>& parts) const
 
 template void ContactTerms<2>::add_varying_traction(int, std::span<const Point<2>>, double&, double&) const;
 template void ContactTerms<2>::add_missed(int, const Piece&, std::span<const Point<2>>,
-                                          std::span<const Point<2>>, Integrals&) const;
+                                          std::span<const Point<2>>, std::span<const double>,
+                                          Integrals&) const;
 template void ContactTerms<2>::resolve_normal(int, std::vector<Part>&) const;
 template void ContactTerms<3>::add_varying_traction(int, std::span<const Point<3>>, double&, double&) const;
 template void ContactTerms<3>::add_missed(int, const Piece&, std::span<const Point<3>>,
-                                          std::span<const Point<3>>, Integrals&) const;
+                                          std::span<const Point<3>>, std::span<const double>,
+                                          Integrals&) const;
 template void ContactTerms<3>::resolve_normal(int, std::vector<Part>&) const;
 
 }  // namespace tribound::certify

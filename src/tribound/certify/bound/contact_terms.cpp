@@ -62,14 +62,15 @@ template <int dim>
 ContactTerms<dim>::ContactTerms(const contact::NitscheForm<dim>& form, ContactRule rule)
     : form_(form),
       rule_(rule),
-      n_(fem::polynomial_dimension(dim - 1, form.space().degree())),
-      kinks_(form.facet_rule(), form.space().degree() + 2)
+      degree_(form.space().degree() + (form.problem().is_axisymmetric() ? 1 : 0)),
+      n_(fem::polynomial_dimension(dim - 1, degree_)),
+      kinks_(form.facet_rule(), degree_ + 2)
 {
   fem::require_degree(form.space().degree());
   const fem::Quadrature<dim - 1>& points = form.facet_rule();
   theta_.resize(static_cast<std::size_t>(n_) * points.size());
   for (int q = 0; q < points.size(); ++q)
-    fem::orthonormal_values<dim - 1>(form.space().degree(), points.points[q],
+    fem::orthonormal_values<dim - 1>(degree_, points.points[q],
                                      std::span(theta_).subspan(static_cast<std::size_t>(q) * n_, n_));
   for (const Piece& half : halves(fem::reference_simplex<dim - 1>()))
   {
@@ -88,7 +89,7 @@ std::vector<double> ContactTerms<dim>::coefficients_on(const Piece& part) const
   for (int q = 0; q < rule.size(); ++q)
   {
     const FacetPoint s = fem::point_in<dim - 1>(part, rule.points[q]);
-    fem::orthonormal_values<dim - 1>(form_.space().degree(), s, std::span(theta).first(n_));
+    fem::orthonormal_values<dim - 1>(degree_, s, std::span(theta).first(n_));
     for (int i = 0; i < n_; ++i)
       for (int j = 0; j < n_; ++j) result[i * n_ + j] += rule.weights[q] * theta[i] * theta_[q * n_ + j];
   }
@@ -105,7 +106,7 @@ auto ContactTerms<dim>::changed(const Fields& fields, std::span<const double> co
 }
 
 template <int dim>
-std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> values) const
+std::vector<Point<dim>> ContactTerms<dim>::coefficients_of(std::span<const Point<dim>> values) const
 {
   std::vector<Point<dim>> coefficients(n_, Point<dim>::Zero());
   for (std::size_t q = 0; q < values.size(); ++q)
@@ -115,14 +116,22 @@ std::vector<Point<dim>> ContactTerms<dim>::project(std::span<const Point<dim>> v
 }
 
 template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::project(int k, std::span<const Point<dim>> t) const
+{
+  return form_.problem().is_axisymmetric() ? coefficients_of(weighted_projection(k, t)) : coefficients_of(t);
+}
+
+template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions& t) const -> Fields
 {
   const auto without_gap = form_.traction_without_gap(u, k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
   const auto initial = form_.initial_traction(k);
-  for (int q = 0; q < form_.n_segment_points(); ++q) augmented[q] = without_gap.col(q) + initial.col(q);
-  const std::vector<Point<dim>> of_augmented = project(augmented);
-  const std::vector<Point<dim>> of_dis = project(on_segment(t.dis, k));
+  const bool scaled = is_scaled(k);
+  for (int q = 0; q < form_.n_segment_points(); ++q)
+    augmented[q] = scale(scaled, form_.contact_points(k)[q].x) * (without_gap.col(q) + initial.col(q));
+  const std::vector<Point<dim>> of_augmented = coefficients_of(augmented);
+  const std::vector<Point<dim>> of_dis = project(k, on_segment(t.dis, k));
   Fields result{};
   for (int i = 0; i < n_; ++i)
     for (int a = 0; a < dim; ++a)
@@ -179,6 +188,8 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
   const problem::ContactLaw& law = segment.contact->law;
   const double tangential_weight = problem::tangential_weight(law);
+  const bool scaled = is_scaled(k);
+  const Largest largest = largest_on(k, piece);
   Integrals result;
   const std::vector<problem::LawPoint<dim>> law_points =
       form_.law_points(k, points.points, points.places, points.normals);
@@ -190,8 +201,9 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     for (int i = 0; i < n_; ++i) add_multiple(values, theta_[q * n_ + i], fields[i]);
     const Point<dim>& n = points.normals[q];
     const double closing = segment.gamma * points.gaps[q];
-    const Point<dim>& p = augmented[q] = closing * n + augmented_of(values);
-    projected[q] = dis_of(values);
+    const double m = scale(scaled, points.places[q]);
+    const Point<dim>& p = augmented[q] = closing * n + augmented_of(values) / m;
+    projected[q] = dis_of(values) / m;
     result.round_off =
         std::max(result.round_off, 1e-14 * (p.norm() + std::abs(closing) + law_points[q].water));
   }
@@ -203,20 +215,31 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     const problem::LawPoint<dim>& point = law_points[q];
     const Point<dim> difference = tractions[q] - projected[q];
     const double normal = difference.dot(point.normal);
-    const double weight = fem::fraction<dim - 1>(piece) * rule.weights[q];
+    const double weight =
+        fem::fraction<dim - 1>(piece) * rule.weights[q] * form_.problem().weight(points.places[q]);
     result.normal += weight * normal * normal;
     result.tangential += weight * (difference - normal * point.normal).squaredNorm();
     augmented[q] += point.water * point.normal + tangential_weight * point.gamma * point.state.slip;
-    strengths[q] = point.strength;
+    const double m = scale(scaled, points.places[q]);
+    augmented[q] *= m;
+    strengths[q] = m * point.strength;
   }
   const bool turns = segment.varying_normal != nullptr;
   result.kinks = kinks_(law, points.normals.first(turns ? rule.size() : 1), augmented, strengths,
-                        bond_on(form_, k), result.round_off);
+                        bond_on(form_, k), largest.scale * result.round_off);
+  result.kinks.hidden *= largest.square_weight;
   if (!turns) return result;
+  std::vector<double> weights(rule.size());
   for (int q = 0; q < rule.size(); ++q)
-    augmented[q] -= (segment.gamma * points.gaps[q] + law_points[q].water) * points.normals[q];
+  {
+    const double m = scale(scaled, points.places[q]);
+    augmented[q] -= m * (segment.gamma * points.gaps[q] + law_points[q].water) * points.normals[q];
+    projected[q] *= m;
+    weights[q] =
+        fem::fraction<dim - 1>(piece) * rule.weights[q] * form_.problem().weight(points.places[q]) / (m * m);
+  }
   result.of_normal = known ? *known : deviation_on<dim>(points.map, *segment.varying_normal, piece);
-  add_missed(k, piece, augmented, projected, result);
+  add_missed(k, piece, augmented, projected, weights, result);
   return result;
 }
 
@@ -245,7 +268,9 @@ template <int dim>
 void ContactTerms<dim>::settle(int k, std::span<Part> parts) const
 {
   double rounding = 0;  // where T is in fact a polynomial, the remainder never settles
-  for (const Part& part : parts) rounding = std::max(rounding, std::pow(1e3 * part.integrals.round_off, 2));
+  for (const Part& part : parts)
+    rounding = std::max(rounding,
+                        largest_on(k, part.data.part).weight * std::pow(1e3 * part.integrals.round_off, 2));
   // A bond is not enclosed between the points: its parts are halved at least twice.
   const int least_depth = cone(form_.segments()[k].contact->law).is_bonded ? 2 : 1;
   std::vector<Halved> active;
@@ -291,8 +316,8 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   ContactSquares result = linearisation(k, t);
   if (!t.reg.empty()) add_traction(k, on_segment(t.reg, k), result.reg2n, result.reg2t);
-  if (problem::cone(segment.contact->law).is_tied)  // T = P is its own projection
-    return with_initial_deviation(k, result);
+  if (problem::cone(segment.contact->law).is_tied && !form_.problem().is_axisymmetric())
+    return with_initial_deviation(k, result);  // T = P is its own projection
   const Fields on_k = fields(k, u, t);
   const bool vanishes =
       std::ranges::all_of(on_k, [](const Pair& pair)
@@ -303,10 +328,11 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
     parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
   for (const contact::ContactDatumPart<dim>& data : form_.data().contact_parts(k))
     parts.push_back({data, changed(on_k, coefficients_on(data.part)), {}});
+  if (is_scaled(k)) resolve_radius(k, parts);
   for (Part& part : parts) integrate(k, {&part.fields, 1}, {&part.data.part, 1}, {&part.integrals, 1});
   if (segment.varying_normal != nullptr) resolve_normal(k, parts);
   if (rule_ == ContactRule::resolved) settle(k, parts);
-  for (const Part& part : parts) add_part(segment, part, result);
+  for (const Part& part : parts) add_part(k, part, result);
   return with_initial_deviation(k, result);
 }
 
@@ -329,11 +355,12 @@ ContactSquares ContactTerms<dim>::with_initial_deviation(int k, ContactSquares s
 /// + p_w is a polynomial up to gamma delta, the remainder of p_w and the deviation of N; its values at the
 /// points contain these, too.
 template <int dim>
-bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, const Part& part) const
+bool ContactTerms<dim>::is_open(int k, const Part& part) const
 {
+  const double missed = form_.segments()[k].gamma * part.data.gap + part.data.water;
   return part.integrals.kinks.lowest >
          (1 + kinks_.amplification()) *
-             (segment.gamma * part.data.gap + part.data.water + part.integrals.deviation);
+             (largest_on(k, part.data.part).scale * missed + part.integrals.deviation);
 }
 
 /// T is Lipschitz continuous in g, s and p_w: [.]_- and the projections on balls do not expand, neither does
@@ -341,13 +368,15 @@ bool ContactTerms<dim>::is_open(const contact::ContactSegment<dim>& segment, con
 /// data are polynomials up to their remainders, so norms on the part K exceed those of the rule by at most 3
 /// |K|^{1/2} times the change that the remainders cause.
 template <int dim>
-void ContactTerms<dim>::add_part(const contact::ContactSegment<dim>& segment, const Part& part,
-                                 ContactSquares& squares) const
+void ContactTerms<dim>::add_part(int k, const Part& part, ContactSquares& squares) const
 {
+  const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const auto& [data, fields, integrals] = part;
-  const double scale = norm_scale(segment);
-  const double missed = misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(data.part));
-  const bool open = is_open(segment, part);
+  const Largest largest = largest_on(k, data.part);
+  const double scale = norm_scale(segment) * (1 + largest.missed);
+  const double missed =
+      misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(data.part) * largest.weight);
+  const bool open = is_open(k, part);
   const Missed& of_normal = open ? integrals.missed_open : integrals.missed;
   const double closing = open ? 0 : segment.gamma * data.gap;
   const double pressure = closing + data.water;
@@ -371,10 +400,10 @@ void ContactTerms<dim>::add_traction(int k, std::span<const Point<dim>> t, doubl
                                      double& tangential) const
 {
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  if (segment.varying_normal == nullptr)
-    add_squares<dim>(project(t), segment, normal, tangential);
+  if (segment.varying_normal == nullptr && !form_.problem().is_axisymmetric())
+    add_squares<dim>(project(k, t), segment, normal, tangential);
   else
-    add_varying_traction(k, project(t), normal, tangential);
+    add_varying_traction(k, project(k, t), normal, tangential);
 }
 
 template class ContactTerms<2>;

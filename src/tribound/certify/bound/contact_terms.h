@@ -25,7 +25,8 @@ enum class ContactRule
   reference
 };
 
-/// Squares of the components on one segment k; Pi_k is the projection on P^p(k)^d by the points of the rule.
+/// Squares of the components on one segment k; Pi_k is the projection on P^p(k)^d by the points of the rule,
+/// both it and the norms with the weight of the problem.
 struct ContactSquares
 {
   double cnt = 0;    ///< h_k ||[P^n]_- - Pi_k [P^n]_-||_k^2
@@ -48,6 +49,12 @@ struct ContactSquares
 /// 2D the same holds along the tangent; in 3D P^t = A - A.N N is in P^{p+2} up to rho (2 + rho) |A| with rho
 /// for N' in P^1. Pieces are halved until that is negligible. The kinks are those of Pi f, which differs from
 /// f by no more.
+///
+/// On the meridian of an axisymmetric problem A contains u_r / r: it is no polynomial, but r A is one of
+/// degree p + 1. So the polynomials are those of m A, m Pi_k T, m P and m S, which have the kinks of T; m = r
+/// on segments off the axis. A segment that touches the axis has m = 1, because u_r / r is a polynomial
+/// there. The weight of |m T|^2 is r / m^2: where this is 1 / r, the rule misses at most
+/// inverse_radius_error() of the squares, and segments are cut so that this is negligible.
 template <int dim>
 class ContactTerms
 {
@@ -60,19 +67,19 @@ class ContactTerms
   [[nodiscard]] ContactSquares operator()(int k, std::span<const double> u, const Tractions& t) const;
   /// lin2n and lin2t alone; the others are 0.
   [[nodiscard]] ContactSquares linearisation(int k, const Tractions& t) const;
-  /// Coefficients of Pi_k t in the orthonormal basis of the reference simplex, t given at the contact points
-  /// of segment k.
-  [[nodiscard]] std::vector<Point<dim>> project(std::span<const Point<dim>> t) const;
+  /// Coefficients of m Pi_k t in the orthonormal basis of the reference simplex, t given at the contact
+  /// points of segment k.
+  [[nodiscard]] std::vector<Point<dim>> project(int k, std::span<const Point<dim>> t) const;
 
  private:
   using FacetPoint = Point<dim - 1>;
   using Piece = fem::Part<dim - 1>;  ///< of the segment, in its coordinates
 
   static constexpr int n_halves = 1 << (dim - 1);
-  static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree);
+  static constexpr int max_n = fem::polynomial_dimension(dim - 1, fem::max_degree + (dim == 2 ? 1 : 0));
 
-  /// Coefficients of {sigma(u)} - gamma [u], which is P(u) without the gap, sigma_0 being interpolated, then
-  /// of Pi_k T.
+  /// Coefficients of m ({sigma(u)} - gamma [u]), which is P(u) without the gap, sigma_0 being interpolated,
+  /// then of m Pi_k T.
   static constexpr int second = padded(dim);
   using Pair = DenseVector<2 * second>;
   [[nodiscard]] static Eigen::Map<const Point<dim>> augmented_of(const Pair& pair)
@@ -83,8 +90,8 @@ class ContactTerms
   {
     return Eigen::Map<const Point<dim>>(pair.data() + second);
   }
-  /// Vector polynomials of degree p on a piece, in the orthonormal basis of the reference simplex in the
-  /// coordinates of the piece.
+  /// Vector polynomials of degree p (axisymmetric: p + 1) on a piece, in the orthonormal basis of the
+  /// reference simplex in the coordinates of the piece.
   using Fields = std::array<Pair, max_n>;
   /// Squares of the possible increase of norms where N is not a polynomial.
   struct Missed
@@ -99,9 +106,9 @@ class ContactTerms
     double tangential = 0;  ///< of |[P^t]_S - Pi_k [P^t]_S|^2
     Missed missed{};
     Missed missed_open{};  ///< where P^n > 0 all over
-    Kinks kinks{};         ///< up to the remainders of gap, threshold and N
+    Kinks kinks{};         ///< of m T, up to the remainders of gap, threshold and N
     double round_off = 0;  ///< upper bound of that of P
-    double deviation = 0;  ///< of P^n from P^{p+2}, as far as N causes it
+    double deviation = 0;  ///< of m P^n from polynomials, as far as N causes it
     problem::NormalDeviation of_normal{};
 
     Integrals& operator+=(const Integrals& other)
@@ -140,9 +147,27 @@ class ContactTerms
     const auto n = static_cast<std::size_t>(form_.n_segment_points());
     return t.subspan(k * n, n);
   }
+  /// Whether m = r; else 1.
+  [[nodiscard]] bool is_scaled(int k) const;
+  [[nodiscard]] static double scale(bool is_scaled, const Point<dim>& x) { return is_scaled ? x[0] : 1.0; }
+  /// Upper bounds on a piece.
+  struct Largest
+  {
+    double scale = 1;          ///< m
+    double weight = 1;         ///< of the integrals
+    double square_weight = 1;  ///< weight / m^2
+    double missed = 0;         ///< by the rule of the integral of a square with that weight, relative to it
+  };
+  [[nodiscard]] Largest largest_on(int k, const Piece& piece) const;
+  /// The orthogonal projection of values at the contact points.
+  [[nodiscard]] std::vector<Point<dim>> coefficients_of(std::span<const Point<dim>> values) const;
+  /// m Pi_k t at the contact points of a segment of an axisymmetric problem.
+  [[nodiscard]] std::vector<Point<dim>> weighted_projection(int k, std::span<const Point<dim>> t) const;
+  /// Halves parts until the rule integrates the quotients by r there.
+  void resolve_radius(int k, std::vector<Part>& parts) const;
   /// Adds h_k ||(Pi_k t)^n||_k^2 and h_k ||(Pi_k t)^t||_k^2.
   void add_traction(int k, std::span<const Point<dim>> t, double& normal, double& tangential) const;
-  /// Upper bounds of the same where N varies, from the coefficients of Pi_k t.
+  /// Upper bounds of the same where N or the weight varies, from the coefficients of m Pi_k t.
   void add_varying_traction(int k, std::span<const Point<dim>> coefficients, double& normal_part,
                             double& tangential_part) const;
   [[nodiscard]] Fields fields(int k, std::span<const double> u, const Tractions& t) const;
@@ -164,16 +189,18 @@ class ContactTerms
   struct PointsOnPiece;
   [[nodiscard]] Integrals integrate(int k, const Fields& fields, const Piece& piece, PointsOnPiece points,
                                     const std::optional<problem::NormalDeviation>& known) const;
-  /// Sets what is missed if N is not a polynomial on the piece, from A, Pi_k T and the kinks there.
+  /// Sets what is missed if N is not a polynomial on the piece, from m A, m Pi_k T and the weights of their
+  /// squares at the points, and the kinks there.
   void add_missed(int k, const Piece& piece, std::span<const Point<dim>> augmented,
-                  std::span<const Point<dim>> dis, Integrals& integrals) const;
+                  std::span<const Point<dim>> dis, std::span<const double> weights,
+                  Integrals& integrals) const;
   /// With what the interpolation of the initial stress may add to cnt and frc.
   [[nodiscard]] ContactSquares with_initial_deviation(int k, ContactSquares squares) const;
   /// Halves parts until the deviation of N from polynomials is negligible on each.
   void resolve_normal(int k, std::vector<Part>& parts) const;
   /// Whether P^n > 0 on a part for any gap and N between the points.
-  [[nodiscard]] bool is_open(const contact::ContactSegment<dim>& segment, const Part& part) const;
-  void add_part(const contact::ContactSegment<dim>& segment, const Part& part, ContactSquares& squares) const;
+  [[nodiscard]] bool is_open(int k, const Part& part) const;
+  void add_part(int k, const Part& part, ContactSquares& squares) const;
   [[nodiscard]] Halved halve(int k, const Fields& fields, std::size_t part, const Piece& piece,
                              const Integrals& whole) const;
   void settle(int k, std::span<Part> parts) const;
@@ -181,9 +208,10 @@ class ContactTerms
   const contact::NitscheForm<dim>& form_;
   ContactRule rule_;
   std::vector<double> theta_;    ///< basis at the points of the rule, [q * n + i]
-  int n_;                        ///< dim P^p(k)
+  int degree_;                   ///< of the fields
+  int n_;                        ///< dim P^degree(k)
   std::vector<double> to_half_;  ///< coefficients_on() the halves of the reference simplex
-  KinkFinder<dim> kinks_;        ///< for P^{p+2}, which contains P^n up to the remainder of the gap
+  KinkFinder<dim> kinks_;        ///< for degree + 2: contains m P^n up to the remainder of the gap
 };
 
 }  // namespace tribound::certify

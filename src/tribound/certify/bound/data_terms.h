@@ -14,11 +14,12 @@ namespace tribound::certify
 /// osc and neu of each own cell; stress units times length^(dim/2).
 struct DataTerms
 {
-  std::vector<double> osc;  ///< (h_T / pi) ||f - Pi^{p-1} f||_T
+  /// (h_T / pi) ||f - Pi^{p-1} f||_T; of an axisymmetric problem that of f - f_h, without the rest of f_h
+  std::vector<double> osc;
   /// Sum over the Neumann facets of T of C_{T,F} ||g - Pi^p_F g||_F, g = g_N - K (u - u_0).
   std::vector<double> neu;
-  /// ||rho|| over all ranks, rho the cell means of what quadrature may miss of the loads. C_F ||rho|| bounds
-  /// its effect.
+  /// ||rho|| over all ranks, with the weight of the problem, rho the cell means of what quadrature may miss
+  /// of the loads. C_F ||rho|| bounds its effect.
   double missed = 0;
 };
 

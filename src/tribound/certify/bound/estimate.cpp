@@ -63,6 +63,8 @@ Estimator<dim>::Estimator(const contact::NitscheForm<dim>& form, ContactRule rul
     for (int i = 0; i < table.n_nodes; ++i)
       for (int k = 0; k < dim; ++k)
         gradient_[(k * table.n_nodes + i) * n_points + q] = table.gradients_at(q)[i][k];
+  if constexpr (dim == 2)
+    if (form.problem().is_axisymmetric()) meridian_.emplace(form);
   if (!form.problem().has_initial_stress()) return;
   const auto n_theta = static_cast<std::size_t>(fem::polynomial_dimension(dim, form.space().degree()));
   theta_.resize(n_theta * n_points);
@@ -87,12 +89,16 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
   mesh.ranks().together(
       [&]
       {
-        stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
+        if (meridian_)
+          meridian_terms(u, stress, rho, result);
+        else
+          stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
         contact_terms(u, stress, result);
         transfer_terms(u, stress, result);
       });
-  const double alg =
-      std::isfinite(friedrichs_.value) ? algebraic_error<dim>(mesh, rho, friedrichs_.value) : 0;
+  const double alg = std::isfinite(friedrichs_.value)
+                         ? algebraic_error<dim>(form_.problem(), mesh, rho, friedrichs_.value)
+                         : 0;
   const double quad = (data.missed > 0 ? friedrichs_.value * data.missed : 0) +
                       rigid_remainder<dim>(form_, stress, friedrichs_.value);
   add_up(result, quad, alg, mesh.ranks());
@@ -104,7 +110,7 @@ BoundComponents Estimator<dim>::linearisation(const Stress<dim>& stress) const
 {
   std::array<double, 3> sums{};
   auto& [lin1, lin2n, lin2t] = sums;
-  for (const double x : stress.lin) lin1 += x * x;
+  lin1 = square_of_lin(stress);
   std::vector<ContactSquares> facets(form_.n_owned_segments());
   parallel_for(
       facets.size(),
@@ -197,6 +203,36 @@ void Estimator<dim>::stress_terms(std::span<const double> u, const Stress<dim>& 
     }
   };
   in_threads(n_threads, on_thread);
+}
+
+/// The same of an axisymmetric problem, and the rest of osc.
+template <int dim>
+void Estimator<dim>::meridian_terms(std::span<const double> u, const Stress<dim>& stress,
+                                    const AffineFields<dim>& rho, Estimate& result) const
+{
+  if constexpr (dim == 2)
+    parallel_for(result.cells.size(),
+                 [&](std::size_t c)
+                 {
+                   const double rho_z = rho.empty() ? 0 : rho[c][0][1];
+                   meridian_->add(static_cast<Index>(c), u, stress, rho_z, result.cells[c]);
+                 });
+}
+
+template <int dim>
+double Estimator<dim>::square_of_lin(const Stress<dim>& stress) const
+{
+  if constexpr (dim == 2)
+    if (meridian_)
+      return parallel_sum(static_cast<std::size_t>(form_.space().mesh().n_owned_cells()), 0.0,
+                          [&](std::size_t c)
+                          {
+                            const auto cell = static_cast<Index>(c);
+                            return meridian_->square(cell, stress.lin_in(cell));
+                          });
+  double sum = 0;
+  for (const double x : stress.lin) sum += x * x;
+  return sum;
 }
 
 /// For a cell with several liftings (facets and groups), the largest is added to the stress; the norms of the

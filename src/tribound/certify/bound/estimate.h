@@ -13,6 +13,7 @@
 #include "tribound/certify/bound/contact_terms.h"
 #include "tribound/certify/bound/data_terms.h"
 #include "tribound/certify/bound/friedrichs.h"
+#include "tribound/certify/bound/meridian_terms.h"
 #include "tribound/certify/bound/transfer_terms.h"
 #include "tribound/certify/equilibrate/stress_tabulation.h"
 
@@ -56,7 +57,7 @@ class Estimator
   [[nodiscard]] double algebraic_bound(std::span<const double> residual, PatchStress patches) const
   {
     return friedrichs_.value *
-           field_norm<dim>(form_.space().mesh(), algebraic_.body_force(residual, patches));
+           field_norm<dim>(form_.problem(), form_.space().mesh(), algebraic_.body_force(residual, patches));
   }
 
   /// The components of the iterate u with its equilibrated stress and rho. Cells are distributed over
@@ -86,6 +87,9 @@ class Estimator
   [[nodiscard]] double norm_of_difference(Index cell, const CellFields& fields) const;
   void stress_terms(std::span<const double> u, const Stress<dim>& stress, int n_threads,
                     Estimate& result) const;
+  void meridian_terms(std::span<const double> u, const Stress<dim>& stress, const AffineFields<dim>& rho,
+                      Estimate& result) const;
+  [[nodiscard]] double square_of_lin(const Stress<dim>& stress) const;
   void transfer_terms(std::span<const double> u, const Stress<dim>& stress, Estimate& result) const;
   [[nodiscard]] std::function<Tensor<dim>(const Point<dim>&)> difference(std::span<const double> u,
                                                                          const Stress<dim>& stress,
@@ -96,8 +100,9 @@ class Estimator
   FriedrichsConstant friedrichs_;
   AlgebraicResidual<dim> algebraic_;
   ContactTerms<dim> contact_;
-  fem::Quadrature<dim> rule_;           ///< exact to degree 2p
-  StressTabulation<dim> stress_table_;  ///< basis of the stress at its points
+  std::optional<MeridianTerms> meridian_;  ///< of an axisymmetric problem
+  fem::Quadrature<dim> rule_;              ///< exact to degree 2p
+  StressTabulation<dim> stress_table_;     ///< basis of the stress at its points
   std::vector<double>
       gradient_;               ///< reference derivatives of the space's basis, [(k n_nodes + i) n_points + q]
   std::vector<double> theta_;  ///< orthonormal basis of P^p at the points, [q n + j]; empty without sigma_0

@@ -10,6 +10,7 @@
 #include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/eigenvalue_bound.h"
 #include "tribound/certify/bound/friedrichs_flux.h"
+#include "tribound/certify/bound/friedrichs_meridian.h"
 #include "tribound/certify/bound/friedrichs_pairs.h"
 #include "tribound/certify/bound/friedrichs_potential.h"
 #include "tribound/certify/bound/korn.h"
@@ -216,6 +217,12 @@ FriedrichsConstant of_gradients(const problem::Problem<dim>& problem, const mesh
 {
   const FriedrichsConstant none{std::numeric_limits<double>::infinity(), 0, 0, mesh.n_cells()};
   if (mesh.partition()) return none;
+  if constexpr (dim == 2)
+    if (problem.is_axisymmetric())
+    {
+      const double value = meridian_friedrichs(problem, mesh);
+      return {value, 1 / (value * value), 0, mesh.n_cells()};
+    }
   const std::vector<contact::ContactSegment<dim>> segments = contact::contact_segments(problem, mesh, 1.0);
   const Held bodies = held<dim>(problem, mesh, segments);
   if (bodies == Held::not_all) return none;
@@ -238,7 +245,7 @@ FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem, con
                                        Index most_factorised)
 {
   FriedrichsConstant result = of_gradients(problem, mesh, most_factorised);
-  result.korn = korn_constant(problem, mesh);
+  if (!problem.is_axisymmetric()) result.korn = korn_constant(problem, mesh);
   return result;
 }
 

@@ -39,7 +39,8 @@ inline constexpr Index most_cells_factorised = 20'000;
 /// Infinite (and theta = 0) if joined bodies have a component with neither Gamma_D nor C, which
 /// check_rigid_motions() refuses as a free translation, and if no theta could be proved. If the factorisation
 /// fails, for example for lack of memory, the proof without it is used, too. Infinite for a distributed mesh:
-/// the constant of the undistributed mesh is known before. So is K.
+/// the constant of the undistributed mesh is known before. So is K. For axisymmetric problems as
+/// meridian_friedrichs(), with theta = 1 / C_F^2 and without K.
 template <int dim>
 [[nodiscard]] FriedrichsConstant friedrichs_constant(const problem::Problem<dim>& problem,
                                                      const mesh::Mesh<dim>& mesh,

@@ -98,7 +98,7 @@ std::map<std::pair<Index, int>, double> turning_losses(const contact::NitscheFor
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.varying_normal == nullptr) continue;
-    const std::vector<Point<dim>> projected = terms.project(t.subspan(k * n, n));
+    const std::vector<Point<dim>> projected = terms.project(static_cast<int>(k), t.subspan(k * n, n));
     double sum = 0;
     for (std::size_t q = 0; q < n; ++q)
     {
