@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tribound/base/norm.h"
+#include "tribound/certify/truth/cell_products.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/fem/evaluation.h"
@@ -102,7 +103,7 @@ void DualNorm<dim>::find_operators()
     std::vector<char> fixed(space_.n_nodes());
     for (Index i = 0; i < space_.n_nodes(); ++i) fixed[i] = constraints.fixed[dim * i + a];
     const auto known = std::ranges::find(operators_, fixed, &Operator::fixed);
-    if (known != operators_.end())
+    if (known != operators_.end() && !form_.problem().is_axisymmetric())
       known->components.push_back(a);
     else
       operators_.push_back({std::move(fixed), {a}, nullptr, nullptr});
@@ -111,33 +112,33 @@ void DualNorm<dim>::find_operators()
                                       .package = algebra::DirectPackage::mumps};
   for (Operator& op : operators_)
   {
-    op.matrix = std::make_unique<algebra::SparseMatrix>(matrix(op.fixed));
+    op.matrix = std::make_unique<algebra::SparseMatrix>(matrix(op.fixed, op.components.front()));
     op.solver = std::make_unique<algebra::LinearSolver>(direct, std::span<const Point<dim>>(),
                                                         algebra::MatrixKind::positive_definite);
   }
   if (parts_.size() > 0)
-    whole_ = std::make_unique<algebra::SparseMatrix>(matrix(std::vector<char>(space_.n_nodes(), 0)));
+    whole_ = std::make_unique<algebra::SparseMatrix>(matrix(std::vector<char>(space_.n_nodes(), 0), 0));
 }
 
 /// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k + sum_F (1/h_F) (phi_j, phi_i)_F between
-/// free nodes, k the segments and F the facets of the coarse mesh on springs; the diagonal everywhere.
+/// free nodes, k the segments and F the facets of the coarse mesh on springs; the diagonal everywhere. Of an
+/// axisymmetric problem with the weight r, and the rest of the strain of a component.
 template <int dim>
-algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) const
+algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed, int component) const
 {
   const int n = space_.basis().n_nodes();
   algebra::Triplets entries;
   entries.reserve(static_cast<std::size_t>(space_.mesh().n_cells()) * n * n);
   std::vector<double> block(static_cast<std::size_t>(n) * n);
-  const std::vector<Tensor<dim>> reference = fem::gradient_products(space_.basis());
+  const CellProducts<dim> products(form_.problem(), space_);
   for (Index c = 0; c < space_.mesh().n_cells(); ++c)
   {
-    const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), c);
-    const Tensor<dim> metric = map.det * (map.inverse_transpose.transpose() * map.inverse_transpose);
-    for (std::size_t k = 0; k < block.size(); ++k) block[k] = metric.cwiseProduct(reference[k]).sum();
+    products(c, component, block);
     add_block(space_.cell_nodes(c), fixed, block, entries);
   }
 
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * space_.degree());
+  const int exact = 2 * space_.degree() + (form_.problem().is_axisymmetric() ? 1 : 0);
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(exact);
   const SideTables tables(space_.basis(), rule);
   fem::Tabulation<dim> memory;
   for (const RefinedSegment<dim>& segment : segments_)
@@ -156,9 +157,12 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed) cons
             for (int i = 0; i < n; ++i) jumps(q, first + i) = side.sign * table.values_at(q)[i];
         });
     const double scale = segment.det() / form_.segments()[segment.whole].h;
-    const Eigen::MatrixXd mass =
-        scale * jumps.transpose() *
-        Eigen::Map<const Eigen::VectorXd>(rule.weights.data(), rule.size()).asDiagonal() * jumps;
+    const auto map = contact::simplex_map(form_.space().mesh(), form_.segments()[segment.whole].slave);
+    Eigen::VectorXd weights(rule.size());
+    for (int q = 0; q < rule.size(); ++q)
+      weights[q] =
+          rule.weights[q] * form_.problem().weight(map(fem::point_in<dim - 1>(segment.part, rule.points[q])));
+    const Eigen::MatrixXd mass = scale * jumps.transpose() * weights.asDiagonal() * jumps;
     add_block(nodes, fixed, std::span(mass.data(), static_cast<std::size_t>(mass.size())), entries);
   }
   add_springs(fixed, entries);
@@ -214,7 +218,9 @@ void DualNorm<dim>::add_contact_load(std::span<const double> u, std::span<double
           const fem::Tabulation<dim>& table = tables(side, memory);
           for (int q = 0; q < rule.size(); ++q)
             fem::add_at_point<dim>(space_.cell_nodes(side.facet.cell), table.values_at(q),
-                                   side.sign * segment.det() * rule.weights[q] * states[q].traction, vector);
+                                   side.sign * segment.det() * rule.weights[q] *
+                                       form_.problem().weight(states[q].point) * states[q].traction,
+                                   vector);
         });
   }
 }

@@ -41,11 +41,12 @@ template <int dim>
 ///     (grad z, grad v) + sum_k (1/h_k) ([z], [v])_k = <R(u), v>   for all v in W, k the segments of C,
 ///     <R(u), v> = L(v) - a(u, v) + (T(u), [v])_C,
 /// ||z||_{C,h} <= ||R(u)||_*, with equality in the limit as W grows. h_k, and gamma in T(u), are those of the
-/// original mesh. The operator couples bodies but no components: one scalar matrix for each set of fixed
-/// nodes, factored once. a(u, v) is exact. f and g_N are integrated as in a form of degree q on the refined
-/// mesh (DiscreteData, up to 1e-5 of their effect, and up to its remainders if its parts run out). T(u) is
-/// integrated with the rule on further divided segments, because it has kinks. Up to these errors the result
-/// is a lower bound. Keeps a reference to the form.
+/// original mesh. Of an axisymmetric problem (z_r / r, v_r / r) is added, and all has the weight r. The
+/// operator couples bodies but no components: one scalar matrix for each set of fixed nodes, factored once.
+/// a(u, v) is exact. f and g_N are integrated as in a form of degree q on the refined mesh (DiscreteData, up
+/// to 1e-5 of their effect, and up to its remainders if its parts run out). T(u) is integrated with the rule
+/// on further divided segments, because it has kinks. Up to these errors the result is a lower bound. Keeps a
+/// reference to the form.
 template <int dim>
 class DualNorm
 {
@@ -80,7 +81,7 @@ class DualNorm
   class SideTables;
 
   void find_operators();
-  [[nodiscard]] algebra::SparseMatrix matrix(const std::vector<char>& fixed) const;
+  [[nodiscard]] algebra::SparseMatrix matrix(const std::vector<char>& fixed, int component) const;
   /// The terms of springs.
   void add_springs(const std::vector<char>& fixed, algebra::Triplets& entries) const;
   void add_contact_load(std::span<const double> u, std::span<double> vector) const;
