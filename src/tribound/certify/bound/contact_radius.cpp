@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/contact_pieces.h"
 #include "tribound/certify/bound/contact_terms.h"
+#include "tribound/certify/bound/radial_projection.h"
 #include "tribound/fem/meridian_rules.h"
 
 namespace tribound::certify
@@ -42,27 +42,28 @@ auto ContactTerms<dim>::largest_on(int k, const Piece& piece) const -> Largest
   return {largest, largest, 1 / least, fem::inverse_radius_error(least, largest, exact - 2 * (degree_ + 2))};
 }
 
-/// (r Pi_k t, theta) = (r t, theta) by the rule for all theta in P^p.
+/// r Pi_k t is in P^{p+1}; where m = 1, it is divided by r at the points.
 template <int dim>
 std::vector<Point<dim>> ContactTerms<dim>::weighted_projection(int k, std::span<const Point<dim>> t) const
 {
-  const int n = fem::polynomial_dimension(dim - 1, degree_ - 1);
-  const auto points = form_.contact_points(k);
-  Eigen::MatrixXd theta(n, form_.n_segment_points());
-  Eigen::MatrixXd weighted(n, form_.n_segment_points());
-  Eigen::MatrixXd values(form_.n_segment_points(), dim);
-  for (int q = 0; q < form_.n_segment_points(); ++q)
+  std::vector<Point<dim>> result(t.begin(), t.end());
+  if constexpr (dim == 2)
   {
-    for (int i = 0; i < n; ++i) theta(i, q) = theta_[q * n_ + i];
-    weighted.col(q) = form_.facet_rule().weights[q] * points[q].x[0] * theta.col(q);
-    values.row(q) = t[q];
+    RadialProjection<1> projection(degree_);
+    const auto points = form_.contact_points(k);
+    for (std::size_t q = 0; q < t.size(); ++q)
+    {
+      projection.add(std::span(theta_).subspan(q * n_, n_), form_.facet_rule().weights[q] * points[q].x[0]);
+      result[q] *= points[q].x[0];
+    }
+    result = coefficients_of(result);
+    projection.apply(result);
+    if (is_scaled(k)) return result;
+    std::vector<Point<dim>> values(t.size(), Point<dim>::Zero());
+    for (std::size_t q = 0; q < t.size(); ++q)
+      for (int i = 0; i < n_; ++i) values[q] += theta_[q * n_ + i] / points[q].x[0] * result[i];
+    result = coefficients_of(values);
   }
-  const CholeskyFactors gram(weighted * theta.transpose());
-  const Eigen::MatrixXd projected = theta.transpose() * gram.solve(weighted * values);
-  std::vector<Point<dim>> result(t.size());
-  const bool scaled = is_scaled(k);
-  for (std::size_t q = 0; q < t.size(); ++q)
-    result[q] = scale(scaled, points[q].x) * projected.row(static_cast<Eigen::Index>(q));
   return result;
 }
 

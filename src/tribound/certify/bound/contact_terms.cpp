@@ -118,7 +118,7 @@ std::vector<Point<dim>> ContactTerms<dim>::coefficients_of(std::span<const Point
 template <int dim>
 std::vector<Point<dim>> ContactTerms<dim>::project(int k, std::span<const Point<dim>> t) const
 {
-  return form_.problem().is_axisymmetric() ? coefficients_of(weighted_projection(k, t)) : coefficients_of(t);
+  return form_.problem().is_axisymmetric() ? weighted_projection(k, t) : coefficients_of(t);
 }
 
 template <int dim>

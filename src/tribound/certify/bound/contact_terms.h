@@ -161,7 +161,7 @@ class ContactTerms
   [[nodiscard]] Largest largest_on(int k, const Piece& piece) const;
   /// The orthogonal projection of values at the contact points.
   [[nodiscard]] std::vector<Point<dim>> coefficients_of(std::span<const Point<dim>> values) const;
-  /// m Pi_k t at the contact points of a segment of an axisymmetric problem.
+  /// project() on a segment of an axisymmetric problem.
   [[nodiscard]] std::vector<Point<dim>> weighted_projection(int k, std::span<const Point<dim>> t) const;
   /// Halves parts until the rule integrates the quotients by r there.
   void resolve_radius(int k, std::vector<Part>& parts) const;
