@@ -1,4 +1,4 @@
-/// The contact terms of axisymmetric problems: the weight r, and quotients by it (method section 5.6).
+/// The contact terms of axisymmetric problems: the weight r, and quotients by it (method section 19.2).
 
 #include <algorithm>
 

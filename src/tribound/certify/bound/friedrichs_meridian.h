@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file friedrichs_meridian.h
-/// The Friedrichs constant of bodies of revolution.
+/// The Friedrichs constant of bodies of revolution, method section 19.3.
 
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"

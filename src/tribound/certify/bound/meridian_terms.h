@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file meridian_terms.h
-/// The components of the bound on the cells of axisymmetric problems.
+/// The components of the bound on the cells of axisymmetric problems, method section 19.2.
 
 #include <span>
 #include <vector>
