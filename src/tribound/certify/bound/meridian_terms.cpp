@@ -20,9 +20,9 @@ int degree_of_squares(const contact::NitscheForm<2>& form)
 {
   const int p = form.space().degree();
   int degree = p + 1;
-  for (std::size_t region = 0; region < form.problem().regions().size(); ++region)
-    if (!form.problem().body_force_is_zero(static_cast<int>(region)))
-      degree = std::max(degree, form.problem().body_force_is_constant(static_cast<int>(region)) ? 2 : p + 8);
+  for (const problem::Region<2>& region : form.problem().regions())
+    for (const problem::Field& f : region.body_force)
+      if (!f.is_zero()) degree = std::max(degree, 2 + std::min(f.degree(), p + 6));
   return 2 * degree;
 }
 
