@@ -75,7 +75,9 @@ void KeptLevel<dim>::write_fields(const std::filesystem::path& directory,
   fields.reserve(components.size() + further.size());
   for (const auto& [name, values] : components) fields.push_back({name, values});
   fields.insert(fields.end(), further.begin(), further.end());
-  const std::array tensors = {io::equilibrated_stress_field(discrete->space, level.stress)};
+  std::vector<io::TensorField<dim>> tensors;
+  if (!discrete->form.problem().is_axisymmetric())  // on a meridian it is r times a stress
+    tensors.push_back(io::equilibrated_stress_field(discrete->space, level.stress));
   io::write_level_vtu<dim>(io::level_files(directory, place(), discrete->mesh.ranks()), place(),
                            discrete->form.problem(), discrete->space, level.u, fields, tensors);
 }

@@ -112,7 +112,8 @@ class SurfaceSampler
         vertex_of_node_(space_.n_nodes(), -1)
   {
     surface_.subdivision = subdivision;
-    has_rest_ = std::ranges::any_of(form.problem().regions(), &io::has_out_of_plane_rest<dim>);
+    has_rest_ = stress_.hoop != nullptr ||
+                std::ranges::any_of(form.problem().regions(), &io::has_out_of_plane_rest<dim>);
     surface_.stress.resize(stress_entries<dim>.size() + (has_rest_ ? 1 : 0));
     at_nodes_ = form.space().basis().tabulate(space_.basis().node_points());
     values_.resize(at_nodes_.n_points);
@@ -124,6 +125,7 @@ class SurfaceSampler
   {
     const mesh::CellMap<dim> map = mesh::cell_map(space_.mesh(), face.cell);
     stress_.at_nodes(face.cell, values_);
+    const std::vector<double> hoop = stress_.hoop_at_nodes(face.cell, space_.basis().n_nodes());
     for (const int node : lattices_[face.local])
     {
       Index& vertex = vertex_of_node_[space_.cell_nodes(face.cell)[node]];
@@ -133,8 +135,9 @@ class SurfaceSampler
       for (std::size_t i = 0; i < stress_entries<dim>.size(); ++i)
         surface_.stress[i].push_back(sigma[stress_entries<dim>[i]]);
       if (has_rest_)
-        surface_.stress.back().push_back(io::out_of_plane_rest(
-            form_.problem(), space_.mesh().region(face.cell), map(space_.basis().node_point(node))));
+        surface_.stress.back().push_back(
+            hoop[node] + io::out_of_plane_rest(form_.problem(), space_.mesh().region(face.cell),
+                                               map(space_.basis().node_point(node))));
     }
     surface_.cells.push_back(face.cell);
     surface_.bodies.push_back(body_of_[face.cell]);
@@ -159,7 +162,7 @@ class SurfaceSampler
   io::TensorField<dim> stress_;
   fem::Tabulation<dim> at_nodes_;    ///< the basis of u at these nodes
   std::vector<Tensor<dim>> values_;  ///< the stress at the nodes of a cell
-  bool has_rest_ = false;            ///< out_of_plane_rest() is not 0
+  bool has_rest_ = false;            ///< out_of_plane_rest() or the hoop part is not 0
   std::vector<std::vector<int>> lattices_;
   std::vector<int> body_of_;  ///< by cells
   std::vector<Index> vertex_of_node_;
@@ -279,7 +282,10 @@ Surface sample_surface(const contact::NitscheForm<dim>& form, std::span<const do
                        const certify::Stress<dim>& stress, const PageLimits& limits)
 {
   const StressAt<dim> at = [&](const fem::LagrangeSpace<dim>& space)
-  { return io::equilibrated_stress_field(space, stress); };
+  {
+    return form.problem().is_axisymmetric() ? io::stress_field(form.problem(), space, u)
+                                            : io::equilibrated_stress_field(space, stress);
+  };
   return sample_surface<dim>(form, u, at, limits);
 }
 

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tribound/case/axisymmetry.h"
 #include "tribound/case/geometry_reader.h"
 #include "tribound/case/group_reader.h"
 #include "tribound/case/history_reader.h"
@@ -196,6 +197,7 @@ Config read_document(const Node& document, std::string file)
   read_method(root, config);
   check_load_steps(root, config);
   check_error_bars(root, config);
+  read_model(root, config);
   return config;
 }
 
@@ -218,6 +220,7 @@ const Table& case_table()
       .keys =
           std::vector<Key>{{"title", text()},
                            {"degree", integer_from(1, "the polynomial degree p", fem::max_degree)},
+                           model_key(),
                            {"units", keys_of(units_table())},
                            {"parameters", keys_of(parameters_table())},
                            {"mesh", keys_of(mesh_table()), fmt::format("[mesh] with {}", mesh_hint)},
@@ -248,6 +251,7 @@ mesh::FindSeams find_seams(const Config& config)
   return [&config](std::span<const std::string> boundary_names)
   {
     mesh::Seams seams;
+    seams.has_axis = config.is_axisymmetric;
     for (const ContactConfig& contact : config.contacts)
     {
       const auto require = [&](const std::string& name)

@@ -293,7 +293,7 @@ problem::Problem<dim> resolve(const Config& config, std::span<const std::string>
   }
   problem::Problem<dim> problem(region_names, boundary_names, regions, boundaries, std::move(pairs));
   if (config.history) check_history<dim>(*config.history, problem);
-  return problem;
+  return config.is_axisymmetric ? problem.axisymmetric() : problem;
 }
 
 template <int dim>

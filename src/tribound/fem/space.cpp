@@ -188,11 +188,20 @@ std::string fixing_boundary(const problem::Problem<dim>& problem, const Lagrange
 namespace
 {
 
-/// Fixes u_r = 0 at the nodes whose vertices all lie on the axis.
+/// Fixes u_r = 0 at the nodes whose vertices all lie on the axis, which is no surface of the body.
 template <int dim>
-void fix_axis(const LagrangeSpace<dim>& space, Constraints& constraints)
+void fix_axis(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& space, Constraints& constraints)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
+  for (const mesh::BoundaryFacet& facet : mesh.boundary())
+  {
+    const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
+    if (!boundary.contact && !boundary.is_loaded() && !boundary.fixes(1)) continue;
+    if (std::ranges::all_of(mesh::facet_vertices(mesh.cell(facet.cell), facet.local),
+                            [&](Index v) { return mesh.vertex(v)[0] == 0; }))
+      throw InputError(boundary.where, fmt::format("boundary \"{}\" lies on the axis", boundary.name),
+                       "no contact and no load where x = 0, and at most displacement = [0, \"free\"]");
+  }
   for (Index c = 0; c < mesh.n_cells(); ++c)
     for (int i = 0; i < space.basis().n_nodes(); ++i)
     {
@@ -259,7 +268,7 @@ Constraints dirichlet(const problem::Problem<dim>& problem, const LagrangeSpace<
       [&]
       {
         std::ranges::for_each(mesh.boundary(), fix_on);
-        if (problem.is_axisymmetric()) fix_axis(space, constraints);
+        if (problem.is_axisymmetric()) fix_axis(problem, space, constraints);
       });
   // A node of a ghost cell may be on Gamma_D through a cell that this rank does not have.
   space.update(std::span(constraints.fixed));

@@ -74,7 +74,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
     if (!form.data().has_body_force(c)) continue;
     form.data().body_force(c, f);
     for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), rule))
-      loads.regions[mesh.region(c)].add(x - about, dx * f[q]);
+      loads.regions[mesh.region(c)].add(x - about, problem.weight(x) * dx * f[q]);
   }
   const fem::Quadrature<dim - 1>& facet_rule = form.facet_rule();
   std::vector<Point<dim>> g(facet_rule.size());
@@ -84,7 +84,7 @@ Loads<dim> integrate_loads(const contact::NitscheForm<dim>& form, const Point<di
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
     form.data().traction(k, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, facet_rule))
-      loads.boundaries[facet.tag].add(x - about, dx * g[q]);
+      loads.boundaries[facet.tag].add(x - about, problem.weight(x) * dx * g[q]);
   }
   add_up<dim>(mesh.ranks(), loads.regions);
   add_up<dim>(mesh.ranks(), loads.boundaries);
@@ -300,6 +300,12 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
   add(
       BalanceKind::contact, [&](const auto&, int tag) { return problem.is_in_contact(tag); },
       [](const auto&) { return "contact"; }, tractions);
+  if (problem.is_axisymmetric())  // around the axis all but the axial forces cancel
+    for (BalanceRow& part : result.rows)
+    {
+      part.force = {0, problem.full_circle() * part.force[1]};
+      part.moment.assign(part.moment.size(), 0.0);
+    }
   add_sum(result.rows, dim, Resultant<dim>::n_moments);
   return result;
 }

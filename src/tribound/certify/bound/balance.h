@@ -26,7 +26,7 @@ enum class BalanceKind
 /// "load", "reaction", "spring", "contact", "sum".
 [[nodiscard]] std::string to_string(BalanceKind kind);
 
-/// A force on the body (per unit of depth in 2D).
+/// A force on the body, in 2D per unit of depth, or of an axisymmetric body on the full circle.
 struct BalanceRow
 {
   BalanceKind kind = BalanceKind::load;

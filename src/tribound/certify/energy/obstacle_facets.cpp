@@ -35,6 +35,7 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
 template <int dim>
 std::string laws_unfit(const contact::NitscheForm<dim>& form)
 {
+  if (form.problem().is_axisymmetric()) return "the bodies are axisymmetric";
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;

@@ -29,6 +29,7 @@ ContactResultants<dim> contact_resultants(const NitscheForm<dim>& form, std::spa
   std::ranges::copy(sum.force, sums.begin() + 4);
   std::ranges::copy(tangential, sums.begin() + 4 + dim);
   form.space().mesh().ranks().sum(std::span(sums));
+  for (double& of_body : sums) of_body *= form.problem().full_circle();
   sum.normal = sums[0];
   sum.tangential = sums[1];
   sum.abs_tangential = sums[2];

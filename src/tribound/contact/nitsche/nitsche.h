@@ -253,7 +253,8 @@ class NitscheForm
   bool has_bonds_ = false;                              ///< on any rank
 };
 
-/// Resultants of a contact traction t given at the contact points, over all ranks.
+/// Resultants of a contact traction t given at the contact points, over all ranks; of an axisymmetric problem
+/// over the full circle, radial parts by their amounts.
 template <int dim>
 struct ContactResultants
 {

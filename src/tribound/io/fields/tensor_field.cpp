@@ -96,26 +96,75 @@ Point<dim> inside(const mesh::CellMap<dim>& map, const Point<dim>& xhat)
 
 }  // namespace
 
+namespace
+{
+
+/// u at the nodes of cells.
+template <int dim>
+class AtNodes
+{
+ public:
+  AtNodes(const fem::LagrangeSpace<dim>& space, std::span<const double> u)
+      : space_(&space), u_(u), table_(space.basis().tabulate(space.basis().node_points()))
+  {
+  }
+
+  [[nodiscard]] int size() const { return table_.n_points; }
+  [[nodiscard]] Tensor<dim> gradient(Index cell, int i, const mesh::CellMap<dim>& map) const
+  {
+    return fem::gradient_at<dim>(space_->cell_nodes(cell), u_, table_.gradients_at(i), map.inverse_transpose);
+  }
+  /// u_r / r, on the axis its limit; `gradient` is that of u.
+  [[nodiscard]] double hoop(Index cell, int i, const Tensor<dim>& gradient) const
+  {
+    const mesh::Mesh<dim>& mesh = space_->mesh();
+    double r = 0;  // without rounding on the axis
+    for (int v = 0; v <= dim; ++v)
+      r += space_->basis().node(i)[v] * mesh.vertex(mesh.cell(cell)[v])[0] / space_->degree();
+    return contact::hoop_strain(r, u_[static_cast<std::size_t>(dim) * space_->cell_nodes(cell)[i]],
+                                gradient(0, 0));
+  }
+
+ private:
+  const fem::LagrangeSpace<dim>* space_;
+  std::span<const double> u_;
+  fem::Tabulation<dim> table_;
+};
+
+}  // namespace
+
 template <int dim>
 TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                               std::span<const double> u)
 {
-  const auto tabulation =
-      std::make_shared<const fem::Tabulation<dim>>(space.basis().tabulate(space.basis().node_points()));
-  return {"stress", [&problem, &space, u, tabulation](Index cell, std::span<Tensor<dim>> values)
-          {
-            const int region = space.mesh().region(cell);
-            const problem::Material& material = problem.material(region);
-            const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
-            for (int i = 0; i < tabulation->n_points; ++i)
-            {
-              values[i] = contact::sigma<dim>(
-                  material, fem::gradient_at<dim>(space.cell_nodes(cell), u, tabulation->gradients_at(i),
-                                                  map.inverse_transpose));
-              if (problem.regions()[region].has_initial_stress())
-                values[i] += problem.initial_stress(region, inside(map, space.basis().node_points()[i]));
-            }
-          }};
+  const auto nodes = std::make_shared<const AtNodes<dim>>(space, u);
+  TensorField<dim> field{"stress", [&problem, &space, nodes](Index cell, std::span<Tensor<dim>> values)
+                         {
+                           const int region = space.mesh().region(cell);
+                           const problem::Material& material = problem.material(region);
+                           const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
+                           for (int i = 0; i < nodes->size(); ++i)
+                           {
+                             const Tensor<dim> gradient = nodes->gradient(cell, i, map);
+                             values[i] = problem.is_axisymmetric()
+                                             ? contact::sigma<dim>(material, gradient,
+                                                                   nodes->hoop(cell, i, gradient))
+                                             : contact::sigma<dim>(material, gradient);
+                             if (problem.regions()[region].has_initial_stress())
+                               values[i] += problem.initial_stress(
+                                   region, inside(map, space.basis().node_points()[i]));
+                           }
+                         }};
+  if (problem.is_axisymmetric())
+    field.hoop = [&problem, &space, nodes](Index cell, std::span<double> values)
+    {
+      const auto& [lambda, mu, plane, expansion] = problem.material(space.mesh().region(cell));
+      const double E = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+      const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
+      for (int i = 0; i < nodes->size(); ++i)
+        values[i] = E * nodes->hoop(cell, i, nodes->gradient(cell, i, map));
+    };
+  return field;
 }
 
 template <int dim>
@@ -151,10 +200,11 @@ void symmetric_at_nodes(const problem::Problem<dim>& problem, const fem::Lagrang
   const std::vector<Point<dim>> nodes = space.basis().node_points();
   std::vector<Tensor<dim>> tensors(nodes.size());
   field.at_nodes(cell, tensors);
+  const std::vector<double> hoop = field.hoop_at_nodes(cell, space.basis().n_nodes());
   for (std::size_t i = 0; i < nodes.size(); ++i)
   {
     values[i] = symmetric_part<dim>(tensors[i], ratio);
-    values[i][2] += out_of_plane_rest(problem, region, map(nodes[i]));
+    values[i][2] += hoop[i] + out_of_plane_rest(problem, region, map(nodes[i]));
   }
 }
 

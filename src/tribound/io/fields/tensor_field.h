@@ -24,6 +24,17 @@ struct TensorField
 {
   std::string name;
   std::function<void(Index cell, std::span<Tensor<dim>> values)> at_nodes;
+  /// On a meridian: E u_r / r at the nodes, which the hoop stress has beside out_of_plane_ratio() (sigma_rr +
+  /// sigma_zz); elsewhere empty.
+  std::function<void(Index cell, std::span<double> values)> hoop{};
+
+  /// The values of `hoop`, 0 where it is empty.
+  [[nodiscard]] std::vector<double> hoop_at_nodes(Index cell, int n_nodes) const
+  {
+    std::vector<double> values(n_nodes, 0.0);
+    if (hoop) hoop(cell, values);
+    return values;
+  }
 };
 
 /// Its values at points of a cell, given in the reference coordinates of Mesh::cell, by interpolation: exact
@@ -38,12 +49,12 @@ template <int dim>
 [[nodiscard]] TensorField<dim> stress_field(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
-/// sigma_h = sigma_dis + sigma_lin as a field. Keeps references to the arguments.
+/// sigma_h = sigma_dis + sigma_lin as a field, on a meridian r times the stress. Keeps references to the arguments.
 template <int dim>
 [[nodiscard]] TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
                                                          const certify::Stress<dim>& stress);
 
-/// sigma_zz / (sigma_xx + sigma_yy) in 2D: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
+/// sigma_zz / (sigma_xx + sigma_yy) in 2D, zz being the direction around the axis on a meridian: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
 /// stress.
 [[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
 
@@ -59,7 +70,8 @@ template <int dim>
 template <int dim>
 [[nodiscard]] std::array<double, 6> symmetric_part(const Tensor<dim>& s, double ratio);
 
-/// The symmetric parts of a stress at the nodes of a cell, with what the initial stress adds to zz in 2D.
+/// The symmetric parts of a stress at the nodes of a cell, with what initial stress and hoop strain add to zz
+/// in 2D.
 template <int dim>
 void symmetric_at_nodes(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                         const TensorField<dim>& field, Index cell, std::span<std::array<double, 6>> values);

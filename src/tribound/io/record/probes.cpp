@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/io/fields/tensor_field.h"
 #include "tribound/io/record/solution_figures.h"
@@ -164,6 +165,30 @@ CellValue<dim> mean(std::span<const CellValue<dim>> values)
   return result;
 }
 
+/// sigma(u_h) at a point of a cell, and what the hoop strain adds to the stress around the axis.
+template <int dim>
+std::pair<Tensor<dim>, double> stress_at(const contact::NitscheForm<dim>& form, std::span<const double> u,
+                                         const TensorField<dim>& field, Index cell, const Point<dim>& xhat)
+{
+  const fem::LagrangeSpace<dim>& space = form.space();
+  const std::array<Point<dim>, 1> at = {xhat};
+  if constexpr (dim == 2)
+    if (form.problem().is_axisymmetric())  // u_r / r is no polynomial
+    {
+      const mesh::CellMap<2> map = mesh::cell_map(space.mesh(), cell);
+      const problem::Material& material = form.problem().material(space.mesh().region(cell));
+      const fem::Tabulation<2> table = space.basis().tabulate(at);
+      const Tensor<2> gradient = fem::gradient_at<2>(space.cell_nodes(cell), u, table.gradients_at(0),
+                                                     map.inverse_transpose);
+      const double u_r = fem::value_at<2>(space.cell_nodes(cell), u, table.values_at(0))[0];
+      const double hoop = contact::hoop_strain(map(xhat)[0], u_r, gradient(0, 0));
+      const Tensor<2> sigma = contact::sigma<2>(material, gradient, hoop);
+      return {sigma, contact::hoop_stress(material, gradient, hoop) -
+                         out_of_plane_ratio(material) * sigma.trace()};
+    }
+  return {values_at<dim>(field, space.basis(), cell, at)[0], 0.0};
+}
+
 /// The values of own cells at the points.
 template <int dim>
 std::vector<CellValue<dim>> cell_values(const contact::NitscheForm<dim>& form,
@@ -185,7 +210,7 @@ std::vector<CellValue<dim>> cell_values(const contact::NitscheForm<dim>& form,
                                                                   space.basis().tabulate(at).values_at(0));
                           const double ratio = out_of_plane_ratio(form.problem().material(mesh.region(c)));
                           const double rest = out_of_plane_rest(form.problem(), mesh.region(c), points.x[k]);
-                          const Tensor<dim> sigma = values_at<dim>(stress, space.basis(), c, at)[0];
+                          const auto [sigma, hoop] = stress_at<dim>(form, level.u, stress, c, xhat);
                           CellValue<dim>& value = values.emplace_back(CellValue<dim>{points.places[k].probe,
                                                                                      points.places[k].point,
                                                                                      bodies.of_cell[c],
@@ -196,8 +221,8 @@ std::vector<CellValue<dim>> cell_values(const contact::NitscheForm<dim>& form,
                                                                                      0});
                           std::ranges::copy(u, value.u.begin());
                           value.stress = symmetric_part<dim>(sigma, ratio);
-                          value.stress[2] += rest;
-                          if (!has_bound) return;
+                          value.stress[2] += rest + hoop;
+                          if (!has_bound || form.problem().is_axisymmetric()) return;
                           const Tensor<dim> sigma_h = values_at<dim>(equilibrated, space.basis(), c, at)[0];
                           value.equilibrated = symmetric_part<dim>(sigma_h, ratio);
                           value.equilibrated[2] += rest;
@@ -260,7 +285,7 @@ std::vector<ProbeRecord> read_probes(const contact::NitscheForm<dim>& form,
                                                         std::string(mesh.region_names()[value.region]),
                                                         {value.u.begin(), value.u.end()},
                                                         value.stress});
-    if (!has_bound) continue;
+    if (!has_bound || form.problem().is_axisymmetric()) continue;
     row.equilibrated = value.equilibrated;
     row.difference = value.difference;
   }

@@ -1,0 +1,71 @@
+#include "tribound/case/axisymmetry.h"
+
+#include <fmt/format.h>
+
+#include "tribound/base/error.h"
+#include "tribound/case/dimension.h"
+
+namespace tribound::case_file
+{
+
+namespace
+{
+
+constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
+
+[[noreturn]] void refuse(const Where& where, std::string_view what, const std::string& right)
+{
+  throw InputError(where, fmt::format("{} of a case with model = \"axisymmetric\"", what), right);
+}
+
+/// The tables that it does not have.
+void check_tables(const TableReader& root)
+{
+  for (const auto& [key, what] : {std::pair("contact", "contact between bodies is not there for the bodies"),
+                                  {"history", "load steps are not there for the bodies"},
+                                  {"section", "there are no sections through the bodies"},
+                                  {"quantity", "there are no quantities with intervals for the bodies"}})
+    if (const Node* node = root.find(key)) refuse(node->where, what, to_3d);
+}
+
+void check_boundary(const BoundaryConfig& boundary)
+{
+  if (boundary.rigid) refuse(boundary.where, "there are no rigid parts", "displacements, or tractions");
+  if (boundary.spring) refuse(boundary.where, "there are no springs", "displacements, or contact");
+  if (!boundary.contact) return;
+  if (problem::has_memory(boundary.contact->law))
+    refuse(boundary.where, "there are no interfaces with a history", "contact = { friction = ... }");
+  if (std::holds_alternative<problem::Slider>(boundary.contact->law))
+    refuse(boundary.where, "there are no sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
+  if (boundary.contact->water) refuse(boundary.where, "there is no water in the contacts", to_3d);
+}
+
+}  // namespace
+
+Key model_key()
+{
+  return {"model", one_of({"axisymmetric"})};
+}
+
+void read_model(const TableReader& root, Config& config)
+{
+  const Node* model = root.find("model");
+  if (model == nullptr) return;
+  (void)to_choice(*model, root.key_of("model").value.words);
+  config.is_axisymmetric = true;
+  check_tables(root);
+  for (const MaterialConfig& material : config.materials)
+    if (material.plane == problem::PlaneModel::stress)
+      refuse(inside(material.where, "plane"), "there is no plane stress in the bodies",
+             "leave plane out: the stress around the axis follows from the hoop strain");
+  for (const LoadConfig& load : config.loads)
+    if (load.temperature || !load.initial_stress.empty())
+      refuse(load.where, "there are no temperatures and initial stresses in the bodies",
+             "forces per volume: body = [0, -9.81]");
+  for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
+  if (config.adapt.bars.energy_tolerance || config.adapt.measure == adapt::ErrorMeasure::energy)
+    refuse(inside(root.where(), "adapt"), "there is no bound of the energy norm",
+           "the bound of the residual: tolerance = 0.05");
+}
+
+}  // namespace tribound::case_file
