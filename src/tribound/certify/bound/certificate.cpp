@@ -201,8 +201,10 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "H^1, "
       "zero where displacements are prescribed" +
           std::string(form.problem().has_rigid_parts() ? " and a rigid motion on each rigid part" : "") +
-          ", with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact "
-          "facets F" +
+          (form.problem().is_axisymmetric()
+               ? ", with ||grad v||^2 + ||v_r / r||^2 + sum_F ||v||_F^2 / h_F = 1 over contact facets F, "
+                 "integrals over the meridian with the weight r"
+               : ", with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact facets F") +
           std::string(form.problem().has_springs() ? " and those on springs" : "") +
           std::string(form.problem().pairs().empty()
                           ? "; no unknown constant"
