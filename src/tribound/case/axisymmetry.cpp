@@ -21,23 +21,26 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
 /// The tables that it does not have.
 void check_tables(const TableReader& root)
 {
-  for (const auto& [key, what] : {std::pair("contact", "contact between bodies is not there for the bodies"),
-                                  {"history", "load steps are not there for the bodies"},
+  for (const auto& [key, what] : {std::pair("history", "load steps are not there for the bodies"),
                                   {"section", "there are no sections through the bodies"},
                                   {"quantity", "there are no quantities with intervals for the bodies"}})
     if (const Node* node = root.find(key)) refuse(node->where, what, to_3d);
+}
+
+void check_contact(const problem::Contact& contact, const Where& where)
+{
+  if (problem::has_memory(contact.law))
+    refuse(where, "there are no interfaces with a history", "contact = { friction = ... }");
+  if (std::holds_alternative<problem::Slider>(contact.law))
+    refuse(where, "there are no sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
+  if (contact.water) refuse(where, "there is no water in the contacts", to_3d);
 }
 
 void check_boundary(const BoundaryConfig& boundary)
 {
   if (boundary.rigid) refuse(boundary.where, "there are no rigid parts", "displacements, or tractions");
   if (boundary.spring) refuse(boundary.where, "there are no springs", "displacements, or contact");
-  if (!boundary.contact) return;
-  if (problem::has_memory(boundary.contact->law))
-    refuse(boundary.where, "there are no interfaces with a history", "contact = { friction = ... }");
-  if (std::holds_alternative<problem::Slider>(boundary.contact->law))
-    refuse(boundary.where, "there are no sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
-  if (boundary.contact->water) refuse(boundary.where, "there is no water in the contacts", to_3d);
+  if (boundary.contact) check_contact(*boundary.contact, boundary.where);
 }
 
 }  // namespace
@@ -63,6 +66,7 @@ void read_model(const TableReader& root, Config& config)
       refuse(load.where, "there are no temperatures and initial stresses in the bodies",
              "forces per volume: body = [0, -9.81]");
   for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
+  for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
   if (config.adapt.bars.energy_tolerance || config.adapt.measure == adapt::ErrorMeasure::energy)
     refuse(inside(root.where(), "adapt"), "there is no bound of the energy norm",
            "the bound of the residual: tolerance = 0.05");

@@ -218,9 +218,11 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
         "what contact tractions lose between meshes that do not match (mor); forces on slave and master are "
         "equal and opposite");
   result.law = describe_law(form.problem());
-  result.constants = {{"poincare", poincare_constant(1)},
-                      {"trace_squared", trace_constant_squared<dim>()},
-                      {"identity_limit", identity_limit}};
+  result.constants = {
+      {"poincare", poincare_constant(1)},
+      {"trace_squared", form.problem().is_axisymmetric() ? std::pow(meridian_trace_constant(1, 1, 1), 2)
+                                                         : trace_constant_squared<dim>()},
+      {"identity_limit", identity_limit}};
   add_friedrichs<dim>(friedrichs, result);
 
   double largest = 0;

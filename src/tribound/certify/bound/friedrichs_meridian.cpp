@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <unordered_map>
 #include <vector>
 
 #include "tribound/certify/bound/constants.h"
 #include "tribound/certify/bound/weights.h"
+#include "tribound/contact/nitsche/segment.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::certify
@@ -38,6 +40,14 @@ struct Reached
   }
 };
 
+/// Facets of two bodies that lie opposite each other, from the side of the first.
+struct Bridge
+{
+  mesh::BoundaryFacet here;
+  mesh::BoundaryFacet there;
+  double h;  ///< of their segment
+};
+
 /// The paths of all cells, shortest first.
 class Paths
 {
@@ -45,6 +55,14 @@ class Paths
   Paths(const problem::Problem<2>& problem, const mesh::Mesh<2>& mesh)
       : problem_(problem), mesh_(mesh), steps_(mesh.n_cells())
   {
+    for (const contact::ContactSegment<2>& segment : contact::contact_segments(problem, mesh, 1.0))
+      if (segment.master)
+      {
+        across_.emplace(segment.slave.facet.cell,
+                        Bridge{segment.slave.facet, segment.master->facet, segment.h});
+        across_.emplace(segment.master->facet.cell,
+                        Bridge{segment.master->facet, segment.slave.facet, segment.h});
+      }
     start_at_roots();
     while (!queue_.empty())
     {
@@ -115,22 +133,35 @@ class Paths
 
   void reach_from(Index cell)
   {
-    const Step& step = steps_[cell];
     for (int local = 0; local < 3; ++local)
     {
       const Index facet = mesh_.topology().cell_facets[cell][local];
       const auto [first, second] = mesh_.topology().facet_cells[facet];
       const Index next = first == cell ? second : first;
-      if (next < 0 || steps_[next].length < infinite) continue;
-      const double entry = crossing(next, mesh_.topology().local_facet(next, facet));
-      const double before = step.length - step.entry * step.entry;
-      const double through = step.entry + crossing(cell, local);
-      queue_.push({{before + through * through + entry * entry, entry, cell}, next});
+      if (next >= 0) reach(cell, local, next, mesh_.topology().local_facet(next, facet), 0);
     }
+    const auto [first, last] = across_.equal_range(cell);
+    for (auto bridge = first; bridge != last; ++bridge)
+    {
+      const auto& [here, there, h] = bridge->second;
+      reach(cell, here.local, there.cell, there.local, h / weighted_length(cell, here.local));
+    }
+  }
+
+  /// `jump`: the square of the constant of what lies between the two sides of the facet.
+  void reach(Index cell, int local, Index next, int local_of_next, double jump)
+  {
+    if (steps_[next].length < infinite) return;
+    const Step& step = steps_[cell];
+    const double entry = crossing(next, local_of_next);
+    const double before = step.length - step.entry * step.entry;
+    const double through = step.entry + crossing(cell, local);
+    queue_.push({{before + through * through + jump + entry * entry, entry, cell}, next});
   }
 
   const problem::Problem<2>& problem_;
   const mesh::Mesh<2>& mesh_;
+  std::unordered_multimap<Index, Bridge> across_;  ///< by cell
   std::vector<Step> steps_;
   std::vector<Index> order_;  ///< cells after those towards their roots
   std::priority_queue<Reached> queue_;

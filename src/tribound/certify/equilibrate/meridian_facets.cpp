@@ -34,7 +34,8 @@ MeridianFacets::MeridianFacets(const contact::NitscheForm<2>& form, const Meridi
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
       add(facet, rule.points[q], x[0] * dx, load[q], moments);
   }
-  for (std::size_t k = 0; k < form.segments().size(); ++k) add_contact(k);
+  for (std::size_t k = 0; k < form.segments().size(); ++k)
+    form.segments()[k].for_each_side([&](const contact::SegmentSide<2>& side) { add_contact(k, side); });
   project();
 }
 
@@ -73,16 +74,16 @@ void MeridianFacets::add(const mesh::BoundaryFacet& facet, const Point<1>& s, do
       moments[v].row(i) += weight * scale * hat[v] * theta[i] * t.transpose();
 }
 
-void MeridianFacets::add_contact(std::size_t k)
+void MeridianFacets::add_contact(std::size_t k, const contact::SegmentSide<2>& side)
 {
   const mesh::Mesh<2>& mesh = form_.space().mesh();
-  const contact::SegmentSide<2>& side = form_.segments()[k].slave;
   for (const Index v : mesh::facet_vertices(mesh.cell(side.facet.cell), side.facet.local)) on_contact_[v] = 1;
   const std::array<std::span<const Point<2>>, 3> parts = {tractions_.dis, tractions_.lin, tractions_.reg};
   for (int part = 0; part < n_parts_; ++part)
     for (int q = 0; q < form_.n_segment_points(); ++q)
-      add(side.facet, side.on_facet(form_.facet_rule().points[q]), form_.contact_points(k)[q].weight,
-          parts[part][k * form_.n_segment_points() + q], traces_of(side.number, part));
+      add(side.facet, side.on_facet(form_.facet_rule().points[q]),
+          side.sign * form_.contact_points(k)[q].weight, parts[part][k * form_.n_segment_points() + q],
+          traces_of(side.number, part));
 }
 
 void MeridianFacets::project()

@@ -40,7 +40,7 @@ class MeridianFacets
   /// moments += weight psi_v theta_i t at the point s of a boundary facet, theta of degree p.
   void add(const mesh::BoundaryFacet& facet, const Point<1>& s, double weight, const Point<2>& t,
            Ends& moments) const;
-  void add_contact(std::size_t k);
+  void add_contact(std::size_t k, const contact::SegmentSide<2>& side);
   /// From the moments on P^p with the weight r to the coefficients of the projection times r.
   void project();
   [[nodiscard]] Ends& traces_of(std::size_t number, int part);

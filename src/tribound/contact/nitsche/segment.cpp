@@ -1,9 +1,13 @@
 #include "tribound/contact/nitsche/segment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "tribound/base/error.h"
 #include "tribound/contact/nitsche/penalty.h"
+#include "tribound/mesh/describe.h"
 
 namespace tribound::contact
 {
@@ -161,6 +165,28 @@ ContactSegment<dim> make_segment(const problem::Problem<dim>& problem, const mes
   return segment;
 }
 
+namespace
+{
+
+/// On a meridian both sides have the same weight r: their facets match and lie at the same radius.
+template <int dim>
+void require_same_radius(const mesh::Mesh<dim>& mesh, const ContactSegment<dim>& segment, const Where& where)
+{
+  constexpr double rounding = 1e-9;
+  const bool fits = matching_facets(mesh, segment) &&
+                    std::ranges::all_of(segment.offset, [&](const Point<dim>& offset)
+                                        { return std::abs(offset[0]) <= rounding * segment.h; });
+  if (fits) return;
+  const Point<dim> centre = simplex_map(mesh, segment.slave)(Point<dim - 1>::Constant(1.0 / dim));
+  throw InputError(where,
+                   fmt::format("the facets of the two bodies of revolution near {} do not lie opposite each "
+                               "other at the same radius",
+                               mesh::describe(centre)),
+                   "meshes that match where the bodies touch; play or interference as gap = -0.01");
+}
+
+}  // namespace
+
 template <int dim>
 std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& problem,
                                                   const mesh::Mesh<dim>& mesh, double gamma0)
@@ -184,9 +210,16 @@ std::vector<ContactSegment<dim>> contact_segments(const problem::Problem<dim>& p
     if (!mesh.ranks().any(!parts.empty()))
       throw InputError(pair.where, "nothing of the master lies opposite the slave",
                        "the outward normals of slave and master must face each other, within reach");
-    for (const auto& [slave, master] : parts)
-      segments.emplace_back(make_segment<dim>(problem, mesh, gamma0, pair.contact, slave, master)).pair =
-          static_cast<int>(k);
+    mesh.ranks().together(
+        [&]
+        {
+          for (const auto& [slave, master] : parts)
+          {
+            segments.push_back(make_segment<dim>(problem, mesh, gamma0, pair.contact, slave, master));
+            segments.back().pair = static_cast<int>(k);
+            if (problem.is_axisymmetric()) require_same_radius(mesh, segments.back(), pair.where);
+          }
+        });
   }
   std::stable_partition(segments.begin(), segments.end(),
                         [&](const ContactSegment<dim>& segment) { return is_owned(mesh, segment); });

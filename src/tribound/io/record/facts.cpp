@@ -35,7 +35,9 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   {
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
-    region.measure += mesh::cell_map(mesh, c).measure();
+    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
+    region.measure += problem.full_circle() * map.measure() *
+                      problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
   }
   for (RegionFacts& region : regions)
   {

@@ -137,7 +137,7 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
   {
     bodies[b].name = names[b];
     bodies[b].cells = static_cast<decltype(bodies[b].cells)>(sums[b * width]);
-    bodies[b].energy = sums[b * width + 1];
+    bodies[b].energy = form.problem().full_circle() * sums[b * width + 1];
     bodies[b].bound = std::sqrt(sums[b * width + 2]);
   }
   return bodies;
@@ -194,7 +194,7 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
   figures.round_off = level.norms.round_off;
   if (!level.solved() || !is_round_off(level.estimate, level.norms))
   {
-    figures.energy = level.norms.energy;
+    figures.energy = form.problem().full_circle() * level.norms.energy;
     figures.sigma_norm = level.norms.sigma;
   }
   if (form.problem().has_springs()) figures.spring_energy = form.springs().energy(level.u);
