@@ -13,10 +13,12 @@ namespace
 
 /// c_i += factor / |Gamma| times the integral of phi_i over the boundary.
 template <int dim>
-void add_mean(const fem::LagrangeSpace<dim>& space, int tag, const Point<dim>& factor, std::span<double> c)
+void add_mean(const contact::NitscheForm<dim>& form, int tag, const Point<dim>& factor, std::span<double> c)
 {
+  const fem::LagrangeSpace<dim>& space = form.space();
   const mesh::Mesh<dim>& mesh = space.mesh();
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(space.degree());
+  const fem::Quadrature<dim - 1> rule =
+      fem::quadrature<dim - 1>(space.degree() + (form.problem().is_axisymmetric() ? 1 : 0));
   const fem::FacetTabulation<dim> table = fem::tabulate_on_facets<dim>(space.basis(), rule.points);
   std::vector<double> integrals(c.size(), 0.0);
   double area = 0;
@@ -25,9 +27,10 @@ void add_mean(const fem::LagrangeSpace<dim>& space, int tag, const Point<dim>& f
     if (facet.tag != tag) continue;
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
     {
+      const double weight = dx * form.problem().weight(x);
       fem::add_at_point<dim>(space.cell_nodes(facet.cell), table.on_facet[facet.local].values_at(q),
-                             dx * factor, integrals);
-      if (facet.cell < mesh.n_owned_cells()) area += dx;
+                             weight * factor, integrals);
+      if (facet.cell < mesh.n_owned_cells()) area += weight;
     }
   }
   area = mesh.ranks().sum(area);
@@ -110,7 +113,7 @@ std::vector<double> functional(const contact::NitscheForm<dim>& form, std::span<
   {
     const int tag = gauged_boundary(form.problem(), gauge);
     if (gauge.component)
-      add_mean<dim>(space, tag, gauge.factor * Point<dim>::Unit(*gauge.component), c);
+      add_mean<dim>(form, tag, gauge.factor * Point<dim>::Unit(*gauge.component), c);
     else if (gauge.jump == Jump::opening)
       add_mean_opening(form, tag, gauge.factor, c);
     else

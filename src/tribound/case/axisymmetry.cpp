@@ -21,10 +21,9 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
 /// The tables that it does not have.
 void check_tables(const TableReader& root)
 {
-  for (const auto& [key, what] : {std::pair("history", "load steps are not there for the bodies"),
-                                  {"section", "there are no sections through the bodies"},
-                                  {"quantity", "there are no quantities with intervals for the bodies"}})
-    if (const Node* node = root.find(key)) refuse(node->where, what, to_3d);
+  if (const Node* node = root.find("section")) refuse(node->where, "there are no sections", to_3d);
+  if (const Node* node = root.find("quantity"))
+    refuse(node->where, "there are no intervals for quantities", "probes, or the forces that a run reports");
 }
 
 void check_contact(const problem::Contact& contact, const Where& where)
@@ -67,6 +66,9 @@ void read_model(const TableReader& root, Config& config)
              "forces per volume: body = [0, -9.81]");
   for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
   for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
+  if (config.history && config.history->refine == Refine::transfer)
+    refuse(inside(config.history->where, "refine"), "meshes are not refined within load steps",
+           "refine = \"replay\" or \"none\"");
   if (config.adapt.bars.energy_tolerance || config.adapt.measure == adapt::ErrorMeasure::energy)
     refuse(inside(root.where(), "adapt"), "there is no bound of the energy norm",
            "the bound of the residual: tolerance = 0.05");

@@ -55,7 +55,7 @@ std::vector<InterfaceFigures> interface_figures(const adapt::LoadStep<dim>& step
   }
   std::vector<double> values;
   for (const InterfaceFigures& figures : of_boundary)
-    for (const auto sum : sums) values.push_back(figures.*sum);
+    for (const auto sum : sums) values.push_back(form.problem().full_circle() * (figures.*sum));
   form.space().mesh().ranks().sum(std::span(values));
   std::vector<InterfaceFigures> result;
   for (std::size_t tag = 0; tag < boundaries.size(); ++tag)
@@ -106,9 +106,11 @@ LoadStepRecord load_step_record(const adapt::LoadStep<dim>& step, const LoadStep
   }
   record.dissipated += record.all.dissipated;
   record.rubbed += record.all.rubbed;
-  record.work += step.work;
-  record.balance = record.work - step.level.norms.energy / 2 - record.all.stored - record.dissipated;
   const contact::NitscheForm<dim>& form = step.at->discrete.form;
+  const double full_circle = form.problem().full_circle();
+  record.work += full_circle * step.work;
+  record.balance =
+      record.work - full_circle * step.level.norms.energy / 2 - record.all.stored - record.dissipated;
   std::vector<Point<dim>> effective = form.water_pressure();
   for (std::size_t i = 0; i < effective.size(); ++i) effective[i] += step.level.traction[i];
   const contact::ContactResultants<dim> resultants = contact::contact_resultants<dim>(form, effective);
