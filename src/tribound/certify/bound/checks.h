@@ -14,7 +14,9 @@ namespace tribound::certify
 {
 
 /// Norms that should vanish, each relative to ||sigma_h||. Powers of h_T or h_F give them the unit of a
-/// stress.
+/// stress. Of axisymmetric problems sigma_h is tau = r sigma, which balances r f and r g: only the axial row
+/// has a divergence prescribed, the projections are those of the patches (equilibrate/meridian_patch.h), and
+/// tau on the axis, where it vanishes, counts as a jump.
 struct IdentityDefects
 {
   double divergence = 0;     ///< (sum h_T^2 ||div sigma_h + Pi^{p-1} f - rho||_T^2)^{1/2}
