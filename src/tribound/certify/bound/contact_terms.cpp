@@ -328,7 +328,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
     parts.push_back({{fem::reference_simplex<dim - 1>(), 0, 0, 0}, on_k, {}});
   for (const contact::ContactDatumPart<dim>& data : form_.data().contact_parts(k))
     parts.push_back({data, changed(on_k, coefficients_on(data.part)), {}});
-  if (is_scaled(k)) resolve_radius(k, parts);
+  if (rule_ == ContactRule::resolved && is_scaled(k)) resolve_radius(k, parts);
   for (Part& part : parts) integrate(k, {&part.fields, 1}, {&part.data.part, 1}, {&part.integrals, 1});
   if (segment.varying_normal != nullptr) resolve_normal(k, parts);
   if (rule_ == ContactRule::resolved) settle(k, parts);
