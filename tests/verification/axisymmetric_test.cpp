@@ -16,6 +16,7 @@
 #include "support/meridian_problem.h"
 #include "support/random_cases.h"
 #include "tribound/base/dense_factors.h"
+#include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/truth/true_error.h"
@@ -178,6 +179,58 @@ TEST(Axisymmetric, BoundIsNotBelowTheDualNorm)
       }
       line += fmt::format("  k = {:<2} {:.4f}", newton.steps.size(), eta.total_sharp / below);
     }
+    std::cout << line << std::endl;
+  }
+}
+
+/// The outer one of two rings is pressed onto the inner one.
+ProblemData<2> random_rings(std::mt19937& random)
+{
+  std::uniform_real_distribution<double> number(-1, 1);
+  const std::vector<problem::ContactLaw> laws = {Frictionless(), Tresca(0.005), Coulomb(0.3), Tied()};
+  const problem::ContactLaw& law = laws[random() % laws.size()];
+  ProblemData<2> data{
+      .boundaries = {loaded<2>("right_outer", formula("-0.03 + 0.02*y"), 0.01 * number(random)),
+                     loaded<2>("top", 0, -0.02), fixed<2>("bottom", free, 0.0),
+                     fixed<2>("bottom_outer", free, 0.0)},
+      .material = lame(1, 0.3)};
+  data.pairs = {pair<2>("right", "left_outer", law)};
+  if (!std::holds_alternative<Tied>(law)) data.pairs[0].contact.gap = -0.02 - 0.01 * number(random);
+  return data;
+}
+
+TEST(Axisymmetric, BoundIsNotBelowTheDualNormOfTwoBodies)
+{
+  for (unsigned seed = 0; seed < n_cases(8); ++seed)
+  {
+    std::mt19937 random(100 + seed);
+    const double inner = seed % 2 == 0 ? 0 : 0.2;
+    const int p = 1 + static_cast<int>(seed / 2) % 3;
+    const int n = 2 + static_cast<int>(random() % 2);
+    const auto bend = [&](const Point<2>& x) -> Point<2>  // facets of both sides still match
+    {
+      return {x[0], x[1] + 0.1 * std::sin(3 * x[0]) * x[1] * (1 - x[1])};
+    };
+    mesh::MeshData<2> data =
+        side_by_side(box<2>({inner, 0}, {0.6, 1}, {n, n}), box<2>({0.6, 0}, {1, 1}, {n, n}), "_outer");
+    data.interfaces.push_back({{{{"right"}, {"left_outer"}}}});
+    const MeridianProblem c(renumbered(mapped(std::move(data), bend), seed), random_rings(random),
+                            {.degree = p, .newton = {.tolerance = 1e-11}});
+    certify::DualNorm<2> dual_norm(c.form, {.refinements = 2, .degree = std::min(p + 2, fem::max_degree)});
+    const solve::NewtonResult<2> newton = c.solve();
+    const double below = dual_norm(newton.u);
+    const certify::Stress<2> stress = certify::equilibrate<2>(c.form, newton.u, newton.traction);
+    const certify::Estimate eta = certify::estimate<2>(c.form, newton.u, stress);
+    const std::string line =
+        fmt::format("seed {}: p = {}, inner = {}  {:.4f}", seed, p, inner, eta.total_sharp / below);
+    EXPECT_GE(eta.total_sharp, below) << line;
+    EXPECT_LE(eta.total_sharp, 1.3 * below) << line;
+    EXPECT_LE(
+        certify::check_identities<2>(c.form, newton.traction, stress,
+                                     certify::Estimator<2>(c.form).algebraic_remainder(newton.u, stress))
+            .largest(),
+        1e-11)
+        << line;
     std::cout << line << std::endl;
   }
 }
