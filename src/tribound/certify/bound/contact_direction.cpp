@@ -64,9 +64,10 @@ void ContactTerms<dim>::add_missed(int k, const Piece& piece, std::span<const Po
   if (!segment.contact->gap)
     for (const Point<dim>& offset : segment.offset) distance = std::max(distance, offset.norm());
   distance *= segment.gamma;
-  integrals.deviation = off.quadratic * (kinks_.amplification() * largest + distance);
+  const Largest on_piece = largest_on(k, piece);
+  integrals.deviation = off.quadratic * (kinks_.amplification() * largest + on_piece.scale * distance);
 
-  const double measure = fem::fraction<dim - 1>(piece) / mesh::factorial<dim - 1>;
+  const double measure = on_piece.weight * fem::fraction<dim - 1>(piece) / mesh::factorial<dim - 1>;
   const problem::FrictionCone friction = problem::cone(segment.contact->law);
   const double pressure = misses * off.quadratic * (std::sqrt(of_augmented) + distance * std::sqrt(measure));
   const double along = misses * tangential_deviation<dim>(off);

@@ -373,7 +373,7 @@ void ContactTerms<dim>::add_part(int k, const Part& part, ContactSquares& square
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const auto& [data, fields, integrals] = part;
   const Largest largest = largest_on(k, data.part);
-  const double scale = norm_scale(segment) * (1 + largest.missed);
+  const double scale = norm_scale(segment) * (rule_ == ContactRule::resolved ? 1 + largest.missed : 1);
   const double missed =
       misses * std::sqrt(segment.h * segment.measure * fem::fraction<dim - 1>(data.part) * largest.weight);
   const bool open = is_open(k, part);
