@@ -230,6 +230,26 @@ TYPED_TEST(ForeignSolutionOf, SimplicesMayHaveNodesThatAreNotEquidistant)
   }
 }
 
+TYPED_TEST(ForeignSolutionOf, NodesAtOnePlaceHaveNoFunctions)
+{
+  constexpr int dim = TypeParam::value;
+  const DiscreteProblem<dim> c = distorted_box<dim>(1);
+  const NodePlace in_the_middle = [](const mesh::NodeIndex& node)
+  {
+    std::array<double, 4> lambda{};
+    for (std::size_t v = 0; v < lambda.size(); ++v)
+      if (node[v] > 0) lambda[v] = 1.0 / static_cast<double>(4 - std::ranges::count(node, 0));
+    return lambda;
+  };
+  for (const int degree : {3, 4})
+  {
+    const certify::ForeignSolution<dim> found = certify::foreign_solution<dim>(
+        exported<dim>(c.mesh, degree, 7, any_quadratic<dim>(), in_the_middle), c.mesh);
+    EXPECT_FALSE(found.is_exact);
+    EXPECT_GT(found.curved_distance, 0.01);
+  }
+}
+
 TYPED_TEST(ForeignSolutionOf, CurvedSimplicesAreSaidToBe)
 {
   constexpr int dim = TypeParam::value;

@@ -67,8 +67,11 @@ class ForeignNodes
     if (order < 3 || curved_distance_ <= tolerance) return;
     places = mean_places();
     if (!are_on_their_faces(places) || !(largest_distance(places) <= tolerance)) return;
+    const Eigen::MatrixXd functions = functions_at(places);
+    constexpr double too_large = 1e6;  // where nodes lie at one place
+    if (!functions.allFinite() || functions.cwiseAbs().maxCoeff() > too_large) return;
     curved_distance_ = 0;
-    find_functions(places);
+    functions_ = functions;
   }
 
   /// Of a node from its place in the straight element.
@@ -143,20 +146,21 @@ class ForeignNodes
     return true;
   }
 
-  void find_functions(std::span<const Barycentric<dim>> places)
+  /// The functions of nodes at these places.
+  [[nodiscard]] Eigen::MatrixXd functions_at(std::span<const Barycentric<dim>> places) const
   {
     const auto n = static_cast<Eigen::Index>(places.size());
     Eigen::MatrixXd values(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index a = 0; a < n; ++a) values(i, a) = mesh::shape_function(lattice_[a], places[i]);
-    functions_ = inverse_of(values);
+    return inverse_of(values);
   }
 
   const mesh::ElementBlock& block_;
   std::span<const Point<dim>> nodes_;
   const std::vector<mesh::NodeIndex>& lattice_;
   double curved_distance_ = 0;
-  Eigen::MatrixXd functions_{};  ///< at the equidistant places, one per column; empty: of these places
+  Eigen::MatrixXd functions_{};  ///< at the equidistant places, one per column; empty: those of these places
 };
 
 }  // namespace tribound::certify
