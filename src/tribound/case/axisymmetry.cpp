@@ -15,30 +15,30 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
 
 [[noreturn]] void refuse(const Where& where, std::string_view what, const std::string& right)
 {
-  throw InputError(where, fmt::format("{} of a case with model = \"axisymmetric\"", what), right);
+  throw InputError(where, fmt::format("a case with model = \"axisymmetric\" has no {}", what), right);
 }
 
 /// The tables that it does not have.
 void check_tables(const TableReader& root)
 {
-  if (const Node* node = root.find("section")) refuse(node->where, "there are no sections", to_3d);
+  if (const Node* node = root.find("section")) refuse(node->where, "sections", to_3d);
   if (const Node* node = root.find("quantity"))
-    refuse(node->where, "there are no intervals for quantities", "probes, or the forces that a run reports");
+    refuse(node->where, "quantities with intervals", "probes, or the forces that a run reports");
 }
 
 void check_contact(const problem::Contact& contact, const Where& where)
 {
   if (problem::has_memory(contact.law))
-    refuse(where, "there are no interfaces with a history", "contact = { friction = ... }");
+    refuse(where, "interfaces with a history", "contact = { friction = ... }");
   if (std::holds_alternative<problem::Slider>(contact.law))
-    refuse(where, "there are no sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
-  if (contact.water) refuse(where, "there is no water in the contacts", to_3d);
+    refuse(where, "sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
+  if (contact.water) refuse(where, "water in its joints", to_3d);
 }
 
 void check_boundary(const BoundaryConfig& boundary)
 {
-  if (boundary.rigid) refuse(boundary.where, "there are no rigid parts", "displacements, or tractions");
-  if (boundary.spring) refuse(boundary.where, "there are no springs", "displacements, or contact");
+  if (boundary.rigid) refuse(boundary.where, "rigid parts", "displacements, or tractions");
+  if (boundary.spring) refuse(boundary.where, "springs", "displacements, or contact");
   if (boundary.contact) check_contact(*boundary.contact, boundary.where);
 }
 
@@ -58,19 +58,18 @@ void read_model(const TableReader& root, Config& config)
   check_tables(root);
   for (const MaterialConfig& material : config.materials)
     if (material.plane == problem::PlaneModel::stress)
-      refuse(inside(material.where, "plane"), "there is no plane stress in the bodies",
+      refuse(inside(material.where, "plane"), "plane stress",
              "leave plane out: the stress around the axis follows from the hoop strain");
   for (const LoadConfig& load : config.loads)
     if (load.temperature || !load.initial_stress.empty())
-      refuse(load.where, "there are no temperatures and initial stresses in the bodies",
-             "forces per volume: body = [0, -9.81]");
+      refuse(load.where, "temperatures and initial stresses", "forces per volume: body = [0, -9.81]");
   for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
   for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
   if (config.history && config.history->refine == Refine::transfer)
-    refuse(inside(config.history->where, "refine"), "meshes are not refined within load steps",
+    refuse(inside(config.history->where, "refine"), "refinement within load steps",
            "refine = \"replay\" or \"none\"");
   if (config.adapt.bars.energy_tolerance || config.adapt.measure == adapt::ErrorMeasure::energy)
-    refuse(inside(root.where(), "adapt"), "there is no bound of the energy norm",
+    refuse(root.require("adapt").where, "bound in the energy norm",
            "the bound of the residual: tolerance = 0.05");
 }
 

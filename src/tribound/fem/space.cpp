@@ -211,10 +211,14 @@ void fix_axis(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& sp
       if (!on_axis) continue;
       const Index dof = dim * space.cell_nodes(c)[i];
       if (constraints.fixed[dof] && constraints.values[dof] != 0)
-        throw InputError(Where{},
-                         fmt::format("displacement {:.9g} away from the axis is prescribed on it",
-                                     constraints.values[dof]),
-                         "0 or \"free\" as the first component where x = 0");
+        throw InputError(
+            problem
+                .boundaries()[problem::group_number(fixing_boundary(problem, space, dof / dim, 0),
+                                                    mesh.boundary_names(), {}, "boundary")]
+                .where,
+            fmt::format("prescribes a displacement of {:.9g} away from the axis on the axis",
+                        constraints.values[dof]),
+            "0 or \"free\" as the first component where x = 0");
       constraints.fixed[dof] = 1;
     }
 }
