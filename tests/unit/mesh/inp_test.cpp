@@ -334,17 +334,33 @@ TEST(Inp, CoincidentNodesOfARegionAreMergedIfAsked)
   EXPECT_EQ(mesh::read_imported(two, nullptr, 1, notes).nodes.size(), 16U) << "regions stay apart";
 }
 
-TEST(Inp, PlaneStressIsNoted)
+TEST(Inp, PlaneStressAndAxisymmetryAreNoted)
 {
   const Directory directory;
-  for (const std::string type : {"CPS3", "CPE3"})
+  const auto notes_of = [&](const std::string& type)
   {
     std::vector<std::string> notes;
     (void)mesh::read_mesh(
         directory.write("deck.inp", "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT,TYPE=" + type + "\n1, 1,2,3\n"), {},
         nullptr, &notes);
-    EXPECT_EQ(notes.size(), type == "CPS3" ? 1U : 0U);
-  }
+    return notes;
+  };
+  EXPECT_TRUE(notes_of("CPE3").empty());
+  EXPECT_THAT(notes_of("CPS3"), testing::ElementsAre(testing::HasSubstr("plane = \"stress\"")));
+  EXPECT_THAT(notes_of("CAX3"),
+              testing::ElementsAre(testing::HasSubstr(
+                  "axisymmetric elements (CAX3), a case says so by model = \"axisymmetric\"")));
+}
+
+TEST(Inp, AxisymmetricElementsAreMeridians)
+{
+  const Directory directory;
+  const mesh::MeshFile file = directory.write(
+      "deck.inp",
+      "*NODE\n1,1,0\n2,3,0\n3,3,1\n4,1,1\n5,2,0\n6,3,.5\n7,2,1\n8,1,.5\n9,4,0\n11,3.5,.5\n12,3.5,0\n"
+      "*ELEMENT,TYPE=CAX8R\n1, 1,2,3,4,5,6,7,8\n*ELEMENT,TYPE=CAX6M\n2, 2,9,3,12,11,6\n");
+  const mesh::Mesh<2> mesh = std::get<mesh::Mesh<2>>(mesh::read_mesh(file));
+  EXPECT_NEAR(volume(mesh), 2.5, 1e-14);
 }
 
 TEST(Inp, IncludedFilesAreKnown)
@@ -455,7 +471,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"Beam",
          two_cubes + "*ELEMENT,TYPE=B31\n7,1,2\n",
          {"deck.inp:18: element 7 is of type B31, which is not read", "C3D20"}},
-        {"Axisymmetric", "*NODE\n1,0,0\n*ELEMENT,TYPE=CAX4\n7,1,1,1,1\n", {"element 7 is of type CAX4"}},
+        {"Torsion", "*NODE\n1,0,0\n*ELEMENT,TYPE=CGAX4\n7,1,1,1,1\n", {"element 7 is of type CGAX4"}},
         {"Shell",
          two_cubes + "*ELEMENT,TYPE=S3\n7,1,2,11\n",
          {"deck.inp:18: element 7 (S3) is a shell: it is not a face of a cell"}},

@@ -66,20 +66,26 @@ void CaseMaker::find_regions()
   initial_temperatures_ = temperatures(deck_.initial_temperatures);
 }
 
-/// A case knows one plane model for each region; a deck that has both is a mistake.
+/// A deck that has several plane models is a mistake: a case knows one.
 void CaseMaker::check_plane(const mesh::InpModel& model)
 {
   if (faces_.dim() == 3) return;
+  const auto kind = [](const mesh::InpElements& elements) -> std::string_view
+  {
+    return elements.type_name.starts_with("CPS")   ? "plane stress"
+           : elements.type_name.starts_with("CAX") ? "axisymmetry"
+                                                   : "plane strain";
+  };
   const mesh::InpElements* first = nullptr;
   for (const mesh::InpPart& part : model.parts)
     for (const mesh::InpElements& elements : part.elements)
     {
       if (elements.family != mesh::InpFamily::plane || elements.places.empty()) continue;
       if (first == nullptr) first = &elements;
-      if (elements.type_name.starts_with("CPS") != first->type_name.starts_with("CPS"))
+      if (kind(elements) != kind(*first))
         log_.refuse(elements.places[0], "ELEMENT",
-                    fmt::format("{} beside {}: plane stress and plane strain in one deck", elements.type_name,
-                                first->type_name));
+                    fmt::format("{} beside {}: {} and {} in one deck", elements.type_name, first->type_name,
+                                kind(elements), kind(*first)));
     }
 }
 
@@ -108,7 +114,7 @@ Node CaseMaker::material(const Groups::Part& region) const
   put(table, "E", {*material->E, {}});
   put(table, "nu", {*material->nu, {}});
   if (material->alpha) put(table, "alpha", {*material->alpha, {}});
-  if (!assembler_.plane_stress().empty()) put(table, "plane", text_node("stress"));
+  if (assembler_.is_plane_stress()) put(table, "plane", text_node("stress"));
   return {std::move(table), {}};
 }
 

@@ -64,7 +64,7 @@ void InpAssembler::find_dimension()
   dim_ = has(InpFamily::solid) ? 3 : 2;
   if (dim_ == 2 && !has(InpFamily::plane))
     throw InputError(mesh_.source, "the mesh has neither plane elements nor solids",
-                     "C3D4, C3D8, C3D10, C3D20 and the like, or CPS and CPE in the plane");
+                     "C3D4, C3D8, C3D10, C3D20 and the like, or CPS, CPE and CAX in the plane");
 }
 
 void InpAssembler::add_nodes(std::size_t i)
@@ -167,15 +167,27 @@ std::string InpAssembler::ignored() const
   return text;
 }
 
-std::string InpAssembler::plane_stress() const
+std::string InpAssembler::first_plane_type(std::string_view prefix) const
 {
   if (dim_ == 3) return {};
   for (const InpPart& part : model_.parts)
     for (const InpElements& elements : part.elements)
-      if (elements.family == InpFamily::plane && elements.type_name.starts_with("CPS"))
-        return fmt::format("the deck has elements of plane stress ({}), a case says so by plane = \"stress\"",
-                           elements.type_name);
+      if (elements.family == InpFamily::plane && elements.type_name.starts_with(prefix))
+        return elements.type_name;
   return {};
+}
+
+std::string InpAssembler::plane_model() const
+{
+  std::string text;
+  if (is_plane_stress())
+    text = fmt::format("the deck has elements of plane stress ({}), a case says so by plane = \"stress\"",
+                       first_plane_type(plane_stress_prefix));
+  if (is_axisymmetric())
+    text +=
+        fmt::format("{}the deck has axisymmetric elements ({}), a case says so by model = \"axisymmetric\"",
+                    text.empty() ? "" : "; ", first_plane_type(axisymmetric_prefix));
+  return text;
 }
 
 ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
@@ -183,7 +195,7 @@ ImportedMesh read_inp(const std::filesystem::path& file, bool ignores_elements,
 {
   InpAssembler assembler(file, {.ignores_elements = ignores_elements});
   ImportedMesh mesh = assembler.assemble();
-  for (const std::string& note : {assembler.ignored(), assembler.plane_stress()})
+  for (const std::string& note : {assembler.ignored(), assembler.plane_model()})
     if (!note.empty()) notes.push_back(fmt::format("{}: {}", file.string(), note));
   return mesh;
 }

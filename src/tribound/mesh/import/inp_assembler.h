@@ -107,8 +107,11 @@ class InpAssembler
   ImportedMesh assemble();
   /// What has been left out, in words; empty: nothing.
   [[nodiscard]] std::string ignored() const;
-  /// That the deck means plane stress, which is not the default of a case; empty: it does not.
-  [[nodiscard]] std::string plane_stress() const;
+  [[nodiscard]] bool is_plane_stress() const { return !first_plane_type(plane_stress_prefix).empty(); }
+  /// x is the distance from the axis, y runs along it.
+  [[nodiscard]] bool is_axisymmetric() const { return !first_plane_type(axisymmetric_prefix).empty(); }
+  /// These two in words, which are not the default of a case; empty: neither.
+  [[nodiscard]] std::string plane_model() const;
 
   [[nodiscard]] const InpLines& lines() const { return lines_; }
   [[nodiscard]] const InpModel& model() const { return model_; }
@@ -138,6 +141,10 @@ class InpAssembler
   {
     return i == 0 ? name : model_.instances[i].name + "." + name;
   }
+  static constexpr std::string_view plane_stress_prefix = "CPS";
+  static constexpr std::string_view axisymmetric_prefix = "CAX";
+  /// Of the plane elements whose type begins so; empty: there are none.
+  [[nodiscard]] std::string first_plane_type(std::string_view prefix) const;
   void check_instances() const;
   void find_dimension();
   void add_nodes(std::size_t i);

@@ -73,10 +73,11 @@ struct FamilyName
 };
 
 /// The first that fits counts.
-constexpr std::array<FamilyName, 11> family_names = {{{"C3D", InpFamily::solid},
+constexpr std::array<FamilyName, 12> family_names = {{{"C3D", InpFamily::solid},
                                                       {"CPS", InpFamily::plane},
                                                       {"CPEG", InpFamily::plane},
                                                       {"CPE", InpFamily::plane},
+                                                      {"CAX", InpFamily::plane},
                                                       {"M3D", InpFamily::shell},
                                                       {"SFM3D", InpFamily::shell},
                                                       {"STRI", InpFamily::shell},

@@ -18,7 +18,7 @@
 namespace tribound::mesh
 {
 
-/// What the elements of a type stand for: C3D*; CPS*, CPE*; S*, M3D*; T2D*, T3D*; none of these.
+/// What the elements of a type stand for: C3D*; CPS*, CPE*, CAX*; S*, M3D*; T2D*, T3D*; none of these.
 enum class InpFamily : char
 {
   solid,

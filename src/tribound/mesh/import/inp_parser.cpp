@@ -16,7 +16,7 @@ namespace
 {
 
 constexpr std::string_view to_split =
-    "C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 and C3D5; CPS and CPE with 3, 4, 6 or 8 nodes in the plane";
+    "C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 and C3D5; CPS, CPE and CAX with 3, 4, 6 or 8 nodes in the plane";
 
 }  // namespace
 
@@ -151,10 +151,9 @@ void InpParser::read_elements(const InpKeyword& keyword)
       lines_.fail(
           lines_.place(),
           fmt::format("element {} is of type {}, which is not read", lines_.fields()[0].substr(0, 80), type),
-          fmt::format(
-              "{}; springs, beams, rigid and axisymmetric elements have no counterpart: ignore_elements = "
-              "true leaves them out",
-              to_split));
+          fmt::format("{}; springs, beams and rigid elements have no counterpart: ignore_elements = true "
+                      "leaves them out",
+                      to_split));
     read_element(elements);
   }
   if (!elements.numbers.empty()) part().elements.push_back(std::move(elements));
