@@ -252,9 +252,10 @@ void CaseMaker::add_gap(const PairGroups& pair, Node::Table& table)
                   given.slave, given.master, *given.adjust));
 }
 
-/// The force of every contact whose slave is one boundary.
+/// The force of every contact whose slave is one boundary; cases of bodies of revolution have none.
 void CaseMaker::add_quantities(Node::Table& table) const
 {
+  if (faces_.is_axisymmetric()) return;
   Node::Array quantities;
   for (const PairGroups& pair : pairs_)
   {

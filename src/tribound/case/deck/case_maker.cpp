@@ -31,6 +31,7 @@ Node::Table CaseMaker::make()
   for (const Groups::Part& part : boundaries_) tables_.push_back(boundary(part));
   Node::Table document;
   if (!deck_.title.empty()) put(document, "title", {deck_.title, {}});
+  if (faces_.is_axisymmetric()) put(document, "model", {std::string("axisymmetric"), {}});
   Node::Table materials;
   Node::Table loads;
   for (std::size_t r = 0; r < regions_.size(); ++r)
@@ -143,9 +144,11 @@ std::vector<Index> CaseMaker::faces_of_displacement(const DeckLoad& load, std::v
   const std::span<const Index> body = whole_bodies_.bodies();
   std::erase_if(faces, [&](Index face) { return whole.contains(body[faces_.nodes(face).nodes[0]]); });
   const std::vector<Index> nodes_on_faces = faces_.nodes_on(faces);
+  const bool is_radial_zero = load.component == 0 && load.course.is_constant() && load.course.last() == 0;
   for (const Index node : load.members)
   {
     if (std::ranges::binary_search(nodes_on_faces, node) || whole.contains(body[node])) continue;
+    if (is_radial_zero && faces_.is_on_axis(node)) continue;  // it is there in any case
     log_.drop(
         load.place, "BOUNDARY",
         fmt::format(

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "tribound/base/sorted.h"
@@ -17,12 +18,14 @@ using mesh::ElementType;
 using mesh::FaceNodes;
 using mesh::Shape;
 
-DeckFaces::DeckFaces(const mesh::ImportedMesh& mesh)
+DeckFaces::DeckFaces(const mesh::ImportedMesh& mesh, bool is_axisymmetric)
     : mesh_(mesh),
       dim_(mesh::table_of(mesh.cells.at(0).type.shape).dim),
+      is_axisymmetric_(is_axisymmetric),
       faces_(mesh::CellFaces(mesh.cells, std::vector<char>(mesh.nodes.size(), 1)).outer())
 {
   for (const mesh::ElementBlock& block : mesh.cells) n_cells_ += static_cast<Index>(block.size());
+  for (const Point<3>& x : mesh.nodes) size_ = std::max(size_, x.lpNorm<Eigen::Infinity>());
 }
 
 Index DeckFaces::find(const FaceNodes& face) const
@@ -58,12 +61,32 @@ std::vector<Index> DeckFaces::loaded_by(std::span<const Index> nodes) const
   for (std::size_t f = 0; f < faces_.size(); ++f)
   {
     const FaceNodes face = this->nodes(static_cast<Index>(f));
-    const bool corners_count = face.type != ElementType{Shape::triangle, 6};
-    if (std::ranges::all_of(face.span().subspan(corners_count ? 0 : 3),
-                            [&](Index node) { return is_given[node] != 0; }))
-      result.push_back(static_cast<Index>(f));
+    int n_carrying = 0;
+    int n_given = 0;
+    for (int i = 0; i < face.type.n_nodes; ++i)
+    {
+      if (!carries_load(face, i)) continue;
+      ++n_carrying;
+      n_given += is_given[face.nodes[i]];
+    }
+    if (n_carrying > 0 && n_given == n_carrying) result.push_back(static_cast<Index>(f));
   }
   return result;
+}
+
+/// Of a triangle of 6 nodes the middles alone do; of an edge of 3 nodes not the nodes on the axis, of one of
+/// 2 nodes none if both are.
+bool DeckFaces::carries_load(const FaceNodes& face, int node) const
+{
+  if (face.type == ElementType{Shape::triangle, 6}) return node >= 3;
+  if (face.type == ElementType{Shape::segment, 3}) return !is_on_axis(face.nodes[node]);
+  return std::ranges::any_of(face.span(), [&](Index v) { return !is_on_axis(v); });
+}
+
+bool DeckFaces::is_on_axis(Index node) const
+{
+  constexpr double rounding = 1e-10;
+  return is_axisymmetric_ && std::abs(mesh_.nodes[node][0]) <= rounding * size_;
 }
 
 namespace
@@ -123,7 +146,8 @@ std::vector<double> DeckFaces::weights(Index face) const
     const Point<3> along_b = (x(a, b + h) - x(a, b - h)) / (2 * h);
     const double area = nodes.type.shape == Shape::segment ? along_a.norm() : along_a.cross(along_b).norm();
     const std::vector<double> values = shape_functions(nodes.type, a, b);
-    for (int i = 0; i < nodes.type.n_nodes; ++i) result[i] += weight * area * values[i];
+    const double circle = is_axisymmetric_ ? 2 * std::numbers::pi * x(a, b)[0] : 1.0;
+    for (int i = 0; i < nodes.type.n_nodes; ++i) result[i] += weight * circle * area * values[i];
   };
   for (int i = 0; i < 4; ++i)
     if (nodes.type.shape == Shape::segment)

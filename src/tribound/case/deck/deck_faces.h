@@ -18,10 +18,12 @@ namespace tribound::case_file
 class DeckFaces
 {
  public:
-  explicit DeckFaces(const mesh::ImportedMesh& mesh);
+  explicit DeckFaces(const mesh::ImportedMesh& mesh, bool is_axisymmetric = false);
 
   [[nodiscard]] std::size_t size() const { return faces_.size(); }
   [[nodiscard]] int dim() const { return dim_; }
+  /// The mesh is the meridian of bodies of revolution: x is the distance from the axis, y runs along it.
+  [[nodiscard]] bool is_axisymmetric() const { return is_axisymmetric_; }
   [[nodiscard]] mesh::FaceNodes nodes(Index face) const { return mesh::nodes_of(mesh_.cells, faces_[face]); }
   [[nodiscard]] const Point<3>& point(Index node) const { return mesh_.nodes[node]; }
   /// Of the element, in the file.
@@ -30,6 +32,8 @@ class DeckFaces
     return mesh_.cells[faces_[face].block].numbers[faces_[face].element];
   }
   [[nodiscard]] Index n_cells() const { return n_cells_; }
+  /// Of bodies of revolution.
+  [[nodiscard]] bool is_on_axis(Index node) const;
   /// -1 if it is no outer face.
   [[nodiscard]] Index find(const mesh::FaceNodes& face) const;
   /// Those all of whose nodes are among the given ones.
@@ -37,12 +41,12 @@ class DeckFaces
   /// The same for many sets, in one pass.
   [[nodiscard]] std::vector<std::vector<Index>> with_all_nodes_of(
       std::span<const std::span<const Index>> sets) const;
-  /// Those all of whose nodes that carry a part of a uniform load are among the given ones: of a triangle of
-  /// 6 nodes the middles alone do.
+  /// Those all of whose nodes that carry a part of a uniform load are among the given ones.
   [[nodiscard]] std::vector<Index> loaded_by(std::span<const Index> nodes) const;
   /// The nodes of these faces, ascending.
   [[nodiscard]] std::vector<Index> nodes_on(std::span<const Index> faces) const;
-  /// The integrals of the shape functions over a face, node by node: what a uniform load is at the nodes.
+  /// The integrals of the shape functions over a face, node by node: what a uniform load is at the nodes; of
+  /// bodies of revolution over the full circle.
   [[nodiscard]] std::vector<double> weights(Index face) const;
   /// The outward unit normal, at the centre.
   [[nodiscard]] Point<3> normal(Index face) const;
@@ -54,8 +58,13 @@ class DeckFaces
   [[nodiscard]] std::vector<std::array<Point<3>, 3>> triangles(Index face) const;
 
  private:
+  /// Whether a uniform load is not 0 at this node of a face.
+  [[nodiscard]] bool carries_load(const mesh::FaceNodes& face, int node) const;
+
   const mesh::ImportedMesh& mesh_;
   int dim_;
+  bool is_axisymmetric_;
+  double size_ = 0;  ///< the largest coordinate
   Index n_cells_ = 0;
   std::vector<mesh::CellFace> faces_{};  ///< ascending by key
 };

@@ -167,6 +167,21 @@ void DeckReader::read_element_loads(const Block& block)
   for (const auto& [_, single] : singles) press(*single.first, line_name(*single.first), single.second);
 }
 
+/// Whether an acceleration leaves plane decks in their plane, and bodies of revolution what they are.
+bool DeckReader::can_act(bool is_gravity, std::span<const double> data) const
+{
+  const auto is_along = [&](std::size_t first, int axis)
+  {
+    for (int i = 0; i < 3; ++i)
+      if (i != axis && data[first + i] != 0) return false;
+    return true;
+  };
+  constexpr int y = 1;
+  if (faces_.is_axisymmetric()) return is_gravity ? is_along(0, y) : is_along(0, y) && is_along(3, y);
+  if (faces_.dim() == 3) return true;
+  return is_gravity ? data[2] == 0 : is_along(3, 2);
+}
+
 void DeckReader::read_acceleration(const Block& block, const Line& line, const std::string& label)
 {
   std::vector<Index> cells;
@@ -180,11 +195,12 @@ void DeckReader::read_acceleration(const Block& block, const Line& line, const s
   for (std::size_t i = 0; i < n_data; ++i) data[i] = number(line, 3 + i);
   double* const axis = data.data() + (is_gravity ? 0 : 3);
   const Point<3> direction(axis[0], axis[1], axis[2]);
-  const bool is_out_of_plane = is_gravity ? axis[2] != 0 : axis[0] != 0 || axis[1] != 0;
-  if (!(direction.norm() > 0) || (faces_.dim() == 2 && is_out_of_plane))
+  if (!(direction.norm() > 0) || !can_act(is_gravity, data))
     assembler_.lines().fail(line.place, fmt::format("{} has no direction in which it can act", label),
-                            is_gravity ? "Eall, GRAV, 9.81, 0, 0, -1"
-                                       : "Eall, CENTRIF, omega^2, point (3), direction of the axis (3)");
+                            faces_.is_axisymmetric() ? "along the axis of revolution, which is y: GRAV, "
+                                                       "9.81, 0, -1, 0; CENTRIF, omega^2, 0, 0, 0, 0, 1, 0"
+                            : is_gravity             ? "Eall, GRAV, 9.81, 0, 0, -1"
+                                         : "Eall, CENTRIF, omega^2, point (3), direction of the axis (3)");
   for (int i = 0; i < 3; ++i) axis[i] /= direction.norm();  // only the direction counts
   apply(load_on(is_gravity ? DeckLoadKind::gravity : DeckLoadKind::rotation, block, line.place,
                 line.fields[0], std::move(cells), 0, std::move(data)),

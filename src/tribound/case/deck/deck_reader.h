@@ -81,6 +81,7 @@ class DeckReader
   void spread_forces(const Block& block, const Line& line, const std::string& target,
                      const std::map<Index, Point<3>>& forces, const std::array<bool, 3>& is_named);
   [[nodiscard]] double initial_temperature(Index node) const;
+  [[nodiscard]] bool can_act(bool is_gravity, std::span<const double> data) const;
   void read_acceleration(const Block& block, const Line& line, const std::string& label);
 
   /// The load of this kind on these members, or a new one.

@@ -17,11 +17,11 @@ namespace tribound::case_file
 namespace
 {
 
-/// Of the sections of a plane mesh; 1 in 3D. Throws InputError where they differ.
-double thickness_of(const mesh::InpAssembler& assembler, int dim)
+/// Of the sections of a plane mesh; 1 in 3D and of bodies of revolution. Throws InputError where they differ.
+double thickness_of(const mesh::InpAssembler& assembler, const DeckFaces& faces)
 {
   std::optional<double> thickness;
-  if (dim == 3) return 1;
+  if (faces.dim() == 3 || faces.is_axisymmetric()) return 1;
   for (const mesh::InpPart& part : assembler.model().parts)
     for (const mesh::InpSection& section : part.sections)
     {
@@ -49,8 +49,8 @@ ImportedDeck import_deck(const std::filesystem::path& deck, const std::string& m
   DeckLog log(assembler.lines(), accepted);
   if (const std::string ignored = assembler.ignored(); !ignored.empty())
     log.add({}, "ELEMENT", Fate::dropped, ignored);
-  const DeckFaces faces(assembler.mesh());
-  const double thickness = thickness_of(assembler, faces.dim());
+  const DeckFaces faces(assembler.mesh(), assembler.is_axisymmetric());
+  const double thickness = thickness_of(assembler, faces);
   if (thickness != 1)
     log.add(
         {}, "SOLID SECTION", Fate::changed,

@@ -15,7 +15,7 @@ namespace tribound::case_file
 struct SpreadForce
 {
   std::vector<Index> faces{};
-  Point<3> traction = Point<3>::Zero();  ///< force per area, in 2D per length
+  Point<3> traction = Point<3>::Zero();  ///< force per area, in plane decks per length
   double area = 0;
   bool keeps_resultant = false;  ///< whether force and moment are those of the nodal forces, to a hundredth
   bool is_exact = false;         ///< whether the forces are those of this traction
