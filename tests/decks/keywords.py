@@ -51,3 +51,12 @@ SYMMETRIES = [("BASE", 3, 3), ("SYM_X", 1, 1), ("SYM_Y", 2, 2)]
 
 def stack(low, up, z=(5, 10)):
     return [*mesh_lines(low, up), *planes(low, up, z), *material((low, up))]
+
+
+def plane(kind_low, kind_up, cells_below=4, thickness=None):
+    """A body on a wider one, in the plane or on the meridian; SYM_X is the plane of symmetry, or the axis."""
+    low = Body("LOW", kind_low, breaks(0, (8, cells_below), (16, 3)), breaks(0, (8, 5)))
+    up = Body("UP", kind_up, breaks(0, (8, 5)), breaks(8, (16, 5)))
+    return [*mesh_lines(low, up), *node_set("BASE", (low, at(1, 0))), *node_set("TOP", (up, at(1, 16))), *node_set("SYM_X", (low, at(0, 0)), (up, at(0, 0))),
+            *surface("LOW_TOP", low, at(1, 8)), *surface("UP_BASE", up, at(1, 8)), *surface("LOADED", up, at(1, 16)),
+            *material((low, up), thickness=thickness), *contact("UP_BASE", "LOW_TOP", mu=0.25), *fixed(("BASE", 2, 2), ("SYM_X", 1, 1))]

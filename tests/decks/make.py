@@ -10,8 +10,9 @@ import math
 import sys
 from pathlib import Path
 
+import axisymmetric
 from bodies import Body, at, breaks, mesh_lines, node_set, surface
-from keywords import SUPPORTS, SYMMETRIES, block, contact, fixed, material, moved, planes, stack, step
+from keywords import SUPPORTS, SYMMETRIES, block, contact, fixed, material, moved, plane, planes, stack, step
 
 DECKS = {}
 
@@ -202,22 +203,14 @@ def _12_include():
                  *step(*moved("TOP", 3, -0.01), supports=SUPPORTS, pairs=[("UP_BASE", "LOW_TOP")])]}
 
 
-def plane(kind_low, kind_up, thickness, **out):
-    low = Body("LOW", kind_low, breaks(0, (8, 4), (16, 3)), breaks(0, (8, 5)))
-    up = Body("UP", kind_up, breaks(0, (8, 5)), breaks(8, (16, 5)))
-    return [*mesh_lines(low, up), *node_set("BASE", (low, at(1, 0))), *node_set("TOP", (up, at(1, 16))), *node_set("SYM_X", (low, at(0, 0)), (up, at(0, 0))),
-            *surface("LOW_TOP", low, at(1, 8)), *surface("UP_BASE", up, at(1, 8)), *surface("LOADED", up, at(1, 16)),
-            *material((low, up), thickness=thickness), *contact("UP_BASE", "LOW_TOP", mu=0.25), *fixed(("BASE", 2, 2), ("SYM_X", 1, 1))]
-
-
 @deck
 def _13_plane_strain():
-    return [*plane("CPE8", "CPE8R", 1), *step(*moved("TOP", 2, -0.02), supports=["BASE", "TOP", "SYM_X"], pairs=[("UP_BASE", "LOW_TOP")])]
+    return [*plane("CPE8", "CPE8R"), *step(*moved("TOP", 2, -0.02), supports=["BASE", "TOP", "SYM_X"], pairs=[("UP_BASE", "LOW_TOP")])]
 
 
 @deck
 def _14_plane_stress():
-    return [*plane("CPS8", "CPS6", 2.5), *step("*DSLOAD", "LOADED, P, 40.", supports=["BASE", "SYM_X"], pairs=[("UP_BASE", "LOW_TOP")])]
+    return [*plane("CPS8", "CPS6", thickness=2.5), *step("*DSLOAD", "LOADED, P, 40.", supports=["BASE", "SYM_X"], pairs=[("UP_BASE", "LOW_TOP")])]
 
 
 @deck
@@ -290,6 +283,9 @@ def _20_prepomax():
             *surface(prefix + "Pressure-1", up, loaded), *surface("Master_Surface-1", low, at(2, 6)), *surface("Slave_Surface-1", up, at(2, 6))]
     pressure = [f"{prefix}Pressure-1_S{n}, P{n}, 100" for n in sorted({face for _, face in up.faces(loaded)})]
     return (Path(__file__).parent / "prepomax.txt").read_text().format(mesh="\n".join(mesh), pressure="\n".join(pressure)).splitlines()
+
+
+DECKS |= axisymmetric.DECKS
 
 
 def write(folder, names=(), refinement=1):
