@@ -86,6 +86,11 @@ mesh::ImportedSolution solution_of(const JudgeRequest& request, TheirStep& their
 /// Meshes follow the energy error, and only sharpness and limits end the run.
 void prepare_to_judge(case_file::Config& config)
 {
+  if (config.is_axisymmetric)
+    throw InputError(
+        {.file = config.file, .key = "model"},
+        "bodies of revolution cannot be judged: there is no bound in the energy norm for them yet",
+        "a model in 3D of a sector");
   config.output.directory /= "judge";
   config.adapt.bars.levels = adapt::EnergyLevels::every;
   if (config.history) return;  // which refines for all of its steps, to adapt.tolerance
