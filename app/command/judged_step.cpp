@@ -22,7 +22,7 @@ namespace tribound::app
 namespace
 {
 
-constexpr const char* not_reached = "the run has not come to this load step";
+constexpr const char* not_reached = "the run has not come so far";
 
 /// Kinds that follow from the displacement alone.
 bool follows_from_displacement(problem::QuantityKind kind)

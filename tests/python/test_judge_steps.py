@@ -130,7 +130,7 @@ class Steps(unittest.TestCase):
         self.assertEqual([step["t"] for step in certificate["steps"]], [0.5, 1.0, 1.5])
         self.assertEqual([step["load_step"] for step in judged.steps], [1, 2, None])
         self.assertEqual([step["t"] for step in judged.steps], [0.5, 1.0, 2.0])
-        self.assertIn("has not come to this load step", judged.steps[2]["reason"])
+        self.assertIn("has not come so far", judged.steps[2]["reason"])
         self.assertIsNotNone(judged.steps[1].relative)
         self.assertIn(judged["worst"], (1, 2))
 
