@@ -30,10 +30,10 @@ std::string check_json(const io::CaseFacts& facts, const io::MeshFacts& mesh, co
                        std::span<const doctor::Finding> findings)
 {
   io::Json object{
-      {"schema", check_schema},         {"title", facts.title},       {"file", facts.file},
-      {"d", facts.dimension},           {"p", facts.degree},          {"friction", facts.friction},
-      {"gamma0", facts.gamma0},         {"dofs", mesh.free_dofs},     {"solver", solver},
-      {"units", io::units_json(facts)}, {"mesh", io::mesh_json(mesh)}};
+      {"schema", check_schema},     {"title", facts.title},           {"file", facts.file},
+      {"d", facts.dimension},       {"model", io::model_json(facts)}, {"p", facts.degree},
+      {"friction", facts.friction}, {"gamma0", facts.gamma0},         {"dofs", mesh.free_dofs},
+      {"solver", solver},           {"units", io::units_json(facts)}, {"mesh", io::mesh_json(mesh)}};
   object["warnings"] = std::ranges::count(findings, doctor::Severity::warning, &doctor::Finding::severity);
   object["findings"] = io::Json::array();
   for (const doctor::Finding& finding : findings) object["findings"].push_back(finding_json(finding));

@@ -31,10 +31,9 @@ std::size_t name_width(const Parts& parts)
 std::string units_line(const io::CaseFacts& facts)
 {
   if (!facts.units.are_named()) return {};
-  const auto label = [&facts](UnitOf what) { return facts.units.label(what, facts.dimension); };
-  return line("units",
-              fmt::format("lengths in {}, stresses in {}, forces in {}, bounds in {}", label(UnitOf::length),
-                          label(UnitOf::stress), label(UnitOf::force), label(UnitOf::stress_norm)));
+  return line("units", fmt::format("lengths in {}, stresses in {}, forces in {}, bounds in {}",
+                                   facts.label(UnitOf::length), facts.label(UnitOf::stress),
+                                   facts.label(UnitOf::force), facts.label(UnitOf::stress_norm)));
 }
 
 std::string mesh_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
@@ -47,8 +46,9 @@ std::string mesh_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 
 std::string method_line(const io::CaseFacts& facts, const io::MeshFacts& mesh)
 {
-  return line("method", fmt::format("{}D, degree {}, {} free degrees of freedom, gamma_0 = {:g}",
-                                    facts.dimension, facts.degree, mesh.free_dofs, facts.gamma0));
+  const std::string model = facts.is_axisymmetric ? "axisymmetric" : fmt::format("{}D", facts.dimension);
+  return line("method", fmt::format("{}, degree {}, {} free degrees of freedom, gamma_0 = {:g}", model,
+                                    facts.degree, mesh.free_dofs, facts.gamma0));
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ std::string probes_text(std::span<const io::ProbeRecord> probes, const io::CaseF
 {
   if (probes.empty()) return {};
   std::vector<std::string> heads = {"u_x", "u_y", "u_z"};
+  if (facts.is_axisymmetric) heads = {"u_r", "u_z"};
   heads.resize(facts.dimension);
   heads.emplace_back("von Mises");
   std::vector<ProbeLine> lines;
@@ -94,8 +95,7 @@ std::string probes_text(std::span<const io::ProbeRecord> probes, const io::CaseF
   if (has_bound) heads.emplace_back("difference");
   const std::string units = facts.units.are_named()
                                 ? fmt::format("displacements in {}, stresses in {}; ",
-                                              facts.units.label(UnitOf::length, facts.dimension),
-                                              facts.units.label(UnitOf::stress, facts.dimension))
+                                              facts.label(UnitOf::length), facts.label(UnitOf::stress))
                                 : std::string();
   return number_table("probes", heads, lines) +
          paragraph("", units + (has_bound ? "stresses are those of sigma_h, the difference |sigma(u_h) - "
@@ -137,11 +137,10 @@ std::string sections_text(std::span<const io::SectionRecord> sections, const io:
     append_cleared(section.V, force, numbers);
     append_cleared(section.M, moment, numbers);
   }
-  const std::string units =
-      facts.units.are_named()
-          ? fmt::format("forces in {}, moments in {}; ", facts.units.label(UnitOf::force, facts.dimension),
-                        facts.units.label(UnitOf::moment, facts.dimension))
-          : std::string();
+  const std::string units = facts.units.are_named()
+                                ? fmt::format("forces in {}, moments in {}; ", facts.label(UnitOf::force),
+                                              facts.label(UnitOf::moment))
+                                : std::string();
   const std::string& note = sections[0].note;
   return number_table("sections", heads, lines) +
          paragraph("", units + "on the part behind the plane, moments about its point; " +

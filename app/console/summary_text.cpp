@@ -25,10 +25,13 @@ namespace
 {
 
 std::string resultants_line(std::string_view caption, std::string_view boundary, const io::Resultants& r,
-                            const std::string& unit)
+                            const io::CaseFacts& facts)
 {
-  return line(caption, fmt::format("{}: normal {:.8g}{}, tangential {:.8g}{}, force ({:.8g}){}", boundary,
-                                   r.normal, unit, r.tangential, unit, fmt::join(r.force, ", "), unit));
+  const std::string unit = facts.behind(UnitOf::force);
+  const std::string force = facts.is_axisymmetric ? fmt::format("axial force {:.8g}", r.force[1])
+                                                  : fmt::format("force ({:.8g})", fmt::join(r.force, ", "));
+  return line(caption, fmt::format("{}: normal {:.8g}{}, tangential {:.8g}{}, {}{}", boundary, r.normal, unit,
+                                   r.tangential, unit, force, unit));
 }
 
 /// For a boundary with Coulomb friction: N and H are the normal and the tangential resultant.
@@ -81,6 +84,20 @@ std::string label(const certify::BalanceRow& row)
 {
   if (row.kind == certify::BalanceKind::load) return row.name + ", " + row.source;
   return row.name;
+}
+
+/// What the numbers of the balance are.
+std::string balance_note(const certify::Balance& balance, const io::CaseFacts& facts)
+{
+  const bool has_units = facts.units.are_named();
+  if (facts.is_axisymmetric)
+    return fmt::format("forces of the full circle{} on the body",
+                       has_units ? " in " + facts.label(UnitOf::force) : "");
+  return fmt::format("on the body; {}about ({:.6g})",
+                     has_units ? fmt::format("forces in {}, moments in {} ", facts.label(UnitOf::force),
+                                             facts.label(UnitOf::moment))
+                               : "moments ",
+                     fmt::join(balance.about, ", "));
 }
 
 /// The bound of the error in the energy norm, or why there is none, and the quantities with their intervals.
@@ -159,6 +176,10 @@ std::string count_in_words(double n)
 std::string balance_text(const certify::Balance& balance, const io::CaseFacts& facts)
 {
   const std::size_t dim = balance.about.size();
+  // Around an axis only the axial forces do not cancel.
+  const bool is_whole = !facts.is_axisymmetric;
+  const std::size_t n_moments = is_whole ? (dim == 2 ? 1 : dim) : 0;
+  const std::size_t first_force = is_whole ? 0 : 1;
   std::size_t width = 0;
   double force = 0;
   double moment = 0;
@@ -169,25 +190,19 @@ std::string balance_text(const certify::Balance& balance, const io::CaseFacts& f
     moment = largest_with(row.moment, moment);
   }
   std::string head;
-  for (std::size_t i = 0; i < dim; ++i) head += fmt::format("{:>13}", fmt::format("force {}", axes[i]));
-  for (std::size_t i = 0; i < (dim == 2 ? 1 : dim); ++i)
+  for (std::size_t i = first_force; i < dim; ++i)
+    head += fmt::format("{:>13}", fmt::format("force {}", is_whole ? axes[i] : "z"));
+  for (std::size_t i = 0; i < n_moments; ++i)
     head += fmt::format("{:>13}", dim == 2 ? "moment" : fmt::format("moment {}", axes[i]));
   std::string text = line("balance", fmt::format("{:<{}}{}", "", width + 10, head));
   for (const certify::BalanceRow& row : balance.rows)
   {
     std::string numbers;
-    for (const double value : row.force) numbers += cell(value, force);
-    for (const double value : row.moment) numbers += cell(value, moment);
+    for (std::size_t i = first_force; i < dim; ++i) numbers += cell(row.force[i], force);
+    for (std::size_t i = 0; i < n_moments; ++i) numbers += cell(row.moment[i], moment);
     text += line("", fmt::format("{:<10}{:<{}}{}", certify::to_string(row.kind), label(row), width, numbers));
   }
-  const problem::Units& units = facts.units;
-  const int d = static_cast<int>(dim);
-  const std::string in_units =
-      units.are_named() ? fmt::format("forces in {}, moments in {} ", units.label(UnitOf::force, d),
-                                      units.label(UnitOf::moment, d))
-                        : "moments ";
-  return text +
-         line("", fmt::format("on the body; {}about ({:.6g})", in_units, fmt::join(balance.about, ", ")));
+  return text + line("", balance_note(balance, facts));
 }
 
 std::string certificate_text(const io::RunRecord& run)
@@ -233,11 +248,10 @@ std::string summary_text(const io::RunRecord& run, const std::string& directory)
   {
     const io::LevelRecord& last = run.levels.back();
     const io::CaseFacts& facts = run.facts;
-    const std::string force = facts.behind(UnitOf::force);
     for (const io::Resultants& part : last.figures.boundary_contact)
-      text += resultants_line("contact", part.boundary, part, force);
+      text += resultants_line("contact", part.boundary, part, facts);
     if (last.figures.boundary_contact.size() > 1)
-      text += resultants_line("", "in all", last.figures.contact, force);
+      text += resultants_line("", "in all", last.figures.contact, facts);
     for (const io::Resultants& part : last.figures.boundary_contact) text += sliding_line(part);
     if (last.balance) text += balance_text(*last.balance, facts);
     text += observations_text(last, facts);

@@ -284,6 +284,7 @@ io::Json study_object(const Study& study)
                   {"title", study.facts.title},
                   {"file", study.facts.file},
                   {"d", study.facts.dimension},
+                  {"model", io::model_json(study.facts)},
                   {"p", study.facts.degree},
                   {"stress", certify::to_string(study.facts.stress)},
                   {"friction", study.facts.friction},

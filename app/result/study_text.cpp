@@ -151,7 +151,7 @@ std::string study_text(const Study& study, const std::string& directory)
   std::string text;
   for (const StudyVariant& variant : study.variants) text += variant_table(variant);
   if (study.facts.units.are_named())
-    text += "error in " + study.facts.units.label(problem::UnitOf::energy_norm, study.facts.dimension) + "\n";
+    text += "error in " + study.facts.label(problem::UnitOf::energy_norm) + "\n";
   text += newton_table(study) + rates_text(study);
   for (const char* name : {"adaptive", "uniform"}) text += difference_text(study, name);
   text += reference_text(study) + guarantee_text(study);

@@ -342,7 +342,8 @@ io::CaseFacts case_facts(const Config& config, int dimension)
                       .friction = friction_name(config),
                       .gamma0 = config.method.gamma_0(),
                       .units = config.units,
-                      .not_covered = config.not_covered};
+                      .not_covered = config.not_covered,
+                      .is_axisymmetric = config.is_axisymmetric};
   for (const QuantityConfig& quantity : config.quantities)
     facts.quantity_units.emplace_back(quantity.name, label(quantity.kind, config.units, dimension));
   return facts;

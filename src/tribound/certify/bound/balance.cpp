@@ -292,7 +292,11 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
           row(BalanceKind::load, boundary.name, "rigid part", force_on<dim>(*boundary.rigid, about)));
   add(
       BalanceKind::reaction,
-      [](const auto& b, int) { return b.rigid ? b.rigid->fixes_any() : b.fixes_any(); },
+      [&](const auto& b, int)
+      {
+        if (problem.is_axisymmetric()) return b.clamps(1);
+        return b.rigid ? b.rigid->fixes_any() : b.fixes_any();
+      },
       [](const auto& b) { return b.rigid ? "guide" : "displacement"; }, reactions);
   add(
       BalanceKind::spring, [](const auto& b, int) { return b.spring.has_value(); },

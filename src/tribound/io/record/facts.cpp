@@ -28,9 +28,10 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
                                       const problem::Units& units)
 {
   std::vector<RegionFacts> regions;
+  const int dimension = problem.is_axisymmetric() ? 3 : dim;
   for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
     regions.push_back(
-        {mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dim, units)});
+        {mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dimension, units)});
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
     RegionFacts& region = regions[mesh.region(c)];

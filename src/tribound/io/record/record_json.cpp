@@ -86,12 +86,16 @@ Json program_json(const BuildFacts& build)
           {"features", build.features}};
 }
 
+Json model_json(const CaseFacts& facts)
+{
+  return facts.is_axisymmetric ? Json("axisymmetric") : Json(nullptr);
+}
+
 Json units_json(const CaseFacts& facts)
 {
   if (!facts.units.are_named()) return nullptr;
   Json object;
-  for (const auto& [name, what] : problem::unit_names)
-    object[name] = facts.units.label(what, facts.dimension);
+  for (const auto& [name, what] : problem::unit_names) object[name] = facts.label(what);
   object["quantities"] = Json::object();
   for (const auto& [name, unit] : facts.quantity_units) object["quantities"][name] = text_or_null(unit);
   return object;
@@ -170,6 +174,7 @@ Json certificate(const RunRecord& run)
               {"status", certify::to_string(run.status)},
               {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},
+              {"model", model_json(run.facts)},
               {"p", run.facts.degree},
               {"stress", certify::to_string(run.facts.stress)},
               {"friction", run.facts.friction},

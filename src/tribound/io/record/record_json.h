@@ -16,6 +16,8 @@ namespace tribound::io
 /// `units` of all JSON files: the label of each kind of number, and of each quantity; null where the case
 /// names no units.
 [[nodiscard]] Json units_json(const CaseFacts& facts);
+/// "axisymmetric", or null.
+[[nodiscard]] Json model_json(const CaseFacts& facts);
 
 /// `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);

@@ -45,6 +45,7 @@ Resultants resultants(const contact::NitscheForm<dim>& form, std::span<const Poi
                       round_off * (r.abs_normal + r.abs_tangential);
   const auto known = [&](double value) { return known_digits(value, result.resolution); };
   result.force = known_components<dim>(r.force, result.resolution);
+  if (form.problem().is_axisymmetric()) result.force[0] = 0;  // around the axis the radial forces cancel
   result.normal = known(r.normal);
   result.tangential = known(r.tangential);
   result.abs_tangential = known(r.abs_tangential);
@@ -60,6 +61,7 @@ void add_moments(Resultants& result, const contact::NitscheForm<dim>& form, std:
   const contact::ContactMoments<dim> in_equilibrium = contact::contact_moments(form, running, tag);
   const double rounding = round_off * m.scale;
   result.moment = known_components(m.slave, (m.slave - in_equilibrium.slave).norm() + rounding);
+  if (form.problem().is_axisymmetric()) result.moment.assign(result.moment.size(), 0.0);  // they cancel, too
   if (result.pair)
     result.pair->moment_on_master =
         known_components(m.master, (m.master - in_equilibrium.master).norm() + rounding);
