@@ -2,6 +2,7 @@
 // obstacles values over a coordinate.
 
 import * as Plot from "@observablehq/plot";
+import { axisNames } from "./axes.js";
 import { chartStyle, responsive } from "./charts.js";
 import { statusColours, statusNames } from "./components.js";
 import { contactSides, partArea } from "./contact_parts.js";
@@ -63,13 +64,13 @@ function panel(rows, zones, { key, title, colour, limits, zero }, width, isLast)
       Plot.line(rows, { x: "arc", y, stroke: colour, strokeWidth: 1.75 }),
       Plot.ruleX(rows, Plot.pointerX({ x: "arc", py: y, strokeOpacity: 0.35 })),
       Plot.tip(rows, Plot.pointerX({ x: "arc", y, title: (row) =>
-        `${number(row[key])}${limits && row.limit > 0 ? `, limit ${number(row.limit)}` : ""}, ${statusNames[row.status]}\nx = ${number(row.x)}, y = ${number(row.y)}` })),
+        `${number(row[key])}${limits && row.limit > 0 ? `, limit ${number(row.limit)}` : ""}, ${statusNames[row.status]}\n${axisNames(2).map((axis) => `${axis} = ${number(row[axis])}`).join(", ")}` })),
     ],
   });
 }
 
 function profileCharts(run, profile) {
-  const rows = Array.from(profile.arc, (arc, i) => ({ arc, x: profile.points[2 * i], y: profile.points[2 * i + 1],
+  const rows = Array.from(profile.arc, (arc, i) => ({ arc, ...Object.fromEntries(axisNames(2).map((axis, c) => [axis, profile.points[2 * i + c]])),
     pressure: profile.pressure[i], friction: profile.friction[i], limit: profile.limit[i], gap: profile.gap[i],
     slip: profile.slip[i], status: profile.status[i],
     ...(profile.water ? { effective: profile.pressure[i] - profile.water[i], water: profile.water[i] } : {}),

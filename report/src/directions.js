@@ -44,6 +44,7 @@ export function contactDirection(surface, camera) {
 /** From above, at the corner that shows most of the large values: often that is where a model is cut by symmetry. */
 export function firstDirection(surface, values, range, up) {
   if (surface.dimension === 2) return {};
+  if (surface.direction) return surface.direction;
   const seen = [35, 125, 215, 305].map((azimuth) => {
     const { eye } = new Camera(3, { azimuth, elevation: 20, up }).axes();
     let [sum, area] = [0, 0];

@@ -1,6 +1,7 @@
 // The guarantee, the case, the machine, and the other files.
 
 import { unpackText } from "./arrays.js";
+import { axisNames, showsMeridian } from "./axes.js";
 import { count, element, number, seconds, section, table, withoutNoise } from "./dom.js";
 import { download } from "./export.js";
 import { guaranteeFormula, typeset } from "./math.js";
@@ -22,7 +23,7 @@ export function guaranteeSection(run) {
     .map(([name, value]) => [name, number(value, 2)]);
   return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
     element("div", { class: "two-columns" },
-      element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), guaranteeFormula(), list(run.covered),
+      element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), guaranteeFormula(showsMeridian()), list(run.covered),
         element("h3", {}, "It does not cover"), list(run.not_covered),
         element("h3", {}, "The law"), element("p", {}, typeset(run.law))),
       element("div", {}, element("h3", {}, "It rests on"),
@@ -48,12 +49,17 @@ function balanceTable(balance, d) {
   const scale = (key) => balance.rows.flatMap((row) => row[key]).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
   const [largestForce, largestMoment] = [scale("force"), scale("moment")];
   const cells = (values, largest) => withoutNoise([values].flat(), largest).map((value) => number(value, 6));
-  const axes = ["x", "y", "z"].slice(0, d);
+  const isMeridian = showsMeridian(); // around the axis only the axial forces do not cancel
+  const axes = axisNames(d);
   const rows = balance.rows.map(({ kind, name, source, force, moment }) => {
-    const cellsOfRow = [kind, name ?? "", source ?? "", ...cells(force, largestForce), ...cells(moment, largestMoment)];
+    const cellsOfRow = [kind, name ?? "", source ?? "", ...(isMeridian ? cells(force, largestForce).slice(1)
+      : [...cells(force, largestForce), ...cells(moment, largestMoment)])];
     cellsOfRow.class = kind === "sum" ? "accepted group" : null;
     return cellsOfRow;
   });
+  if (isMeridian)
+    return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, "Axial forces of the full circle on the body; in equilibrium the sum is zero."),
+      table(["", "where", "by", headed(`#force ${axes[1]}`, forces)], rows, { class: "balance" })];
   const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
   return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
     table(["", "where", "by", ...axes.map((axis) => headed(`#force ${axis}`, forces)),
@@ -62,8 +68,9 @@ function balanceTable(balance, d) {
 
 /** The units of the numbers. */
 function unitsText({ d, units }) {
-  if (!units) return `The case names no units: lengths, stresses and forces are in those of its numbers${d === 2 ? ", forces per unit of depth" : ""}.`;
-  return `Lengths are in ${unit("length")}, stresses in ${unit("stress")}, forces in ${unit("force")}${d === 2 ? `, per ${unit("length")} of depth` : ""}.`;
+  const per = (depth) => (showsMeridian() ? ", of the full circle; energies and norms are per radian" : d === 2 ? depth : "");
+  if (!units) return `The case names no units: lengths, stresses and forces are in those of its numbers${per(", forces per unit of depth")}.`;
+  return `Lengths are in ${unit("length")}, stresses in ${unit("stress")}, forces in ${unit("force")}${per(`, per ${unit("length")} of depth`)}.`;
 }
 
 export function caseSection(data) {

@@ -5,9 +5,9 @@ import { exportButtons } from "./export.js";
 
 const control = (label, ...inputs) => element("label", { class: "control" }, element("span", {}, label), ...inputs);
 
-/** `stages`: stagesOf(); `set(changes)` of the state; `view`: the actions home, svgs, rows. */
+/** `stages`: stagesOf(); `set(changes)` of the state; `view`: the actions home, svgs, rows; `ways`: of showing the body, see FieldView. */
 export class FieldControls {
-  constructor(last, nLevels, stages, set, view) {
+  constructor(last, nLevels, stages, set, view, ways) {
     this.stages = stages;
     const button = (title, name, onclick) => element("button", { type: "button", title, onclick }, name);
     const check = (id) => element("input", { id, type: "checkbox", onchange: (event) => set({ [id]: event.target.checked }) });
@@ -28,7 +28,9 @@ export class FieldControls {
     const hasContact = last.profiles?.some(({ paired }) => !paired) || last.contact;
     this.range = element("span", { class: "control" }, element("span", {}, "Colours from"), this.low, element("span", {}, "to"), this.high,
       button(`colours from the values of this ${stages.name}`, "Auto", () => set({ range: null })));
+    this.way = element("select", { id: "way", onchange: () => ways.show(this.way.value) }, ways.names.map(([id, name]) => element("option", { value: id }, name)));
     this.element = element("div", { class: "controls screen-only" }, control("Field", this.field), this.range,
+      ways.names.length > 1 ? control("Show", this.way) : null,
       nLevels > 1 ? control(stages.name === "level" ? "Level" : "Step", this.level, this.levelText) : null, control("Deformation", this.factor, this.factorText),
       button("displacements at true scale", "1 : 1", () => set({ factor: 1 })),
       last.interfaces?.length > 0 ? control("Apart", this.explosion) : null,
@@ -52,6 +54,7 @@ export class FieldControls {
 
   show(state, { surface, lastLevel, field, range, usual }) {
     this.usual = usual;
+    this.way.value = state.way;
     this.field.value = field.id;
     this.level.value = state.level;
     this.levelText.textContent = `${this.stages.text(surface.level)} of ${lastLevel}, ${count(surface.cells)} cells`;

@@ -22,7 +22,8 @@ export function usualFactor({ largestDisplacement, box }) {
 export function noteText(surface, { factor, explosion }, { isCut, isInside, isSlow, stage, nLeftOut }) {
   return [
     isSlow ? "This browser has no WebGL: the page draws the picture itself, more slowly." : "",
-    surface.dimension === 3 && !isCut ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}.` : "",
+    surface.words ?? "",
+    surface.dimension === 3 && !isCut && !surface.words ? `Shown is the surface of the ${surface.nBodies > 1 ? "bodies" : "body"}.` : "",
     !isCut ? "" : isInside ? "On the section values are averages at the vertices of the mesh." : "The page does not have the inside of this mesh.",
     surface.merged_below > 0 ? `The mesh is too large for this page: details below ${measured(number(surface.merged_below, 2), unit("length"))} are merged, ${count(surface.nFaces)} triangles are shown.` : "",
     nLeftOut > 0 ? `${nLeftOut === 1 ? `One of the ${stage}s in between is` : `${nLeftOut} of the ${stage}s in between are`} left out to keep the page small.` : "",

@@ -1,6 +1,7 @@
 // The interactive picture of the mesh and the fields on it.
 
 import { unpackAll } from "./arrays.js";
+import { showsMeridian } from "./axes.js";
 import { Bodies } from "./bodies.js";
 import { Camera } from "./camera.js";
 import { statusColours, statusNames } from "./components.js";
@@ -14,6 +15,7 @@ import { obstacleCorners } from "./obstacle.js";
 import { overlay } from "./overlay.js";
 import { frameAspect, homeScale, Picture, placeText } from "./picture.js";
 import { valueAt } from "./pick.js";
+import { shownAs, ways } from "./revolution.js";
 import { colourRange, cornerPositions, fieldRows, fieldsOf, readSurface, vertexPositions } from "./surface.js";
 import { colours, fieldLegend, onScale, shownStates } from "./scales.js";
 import { hasWebGL } from "./scene.js";
@@ -22,37 +24,40 @@ import { stagesOf } from "./stages.js";
 const paperWidth = 530; // CSS pixels of the picture on paper, next to its legend
 const manySegments = 30000; // beyond this, the mesh is drawn only on request
 
+/** `way`: one of those in revolution.js to show the body; `show(way)`: changes it. */
 class FieldView {
-  constructor(data, components) {
+  constructor(data, components, way, show) {
     this.data = data;
     this.components = components;
     this.levels = data.fields;
-    const is2d = this.levels.at(-1).dimension === 2;
-    this.state = { level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1, explosion: 0 };
+    const is2d = this.levels.at(-1).dimension === 2 && way !== "body";
+    this.state = { way, level: this.levels.length - 1, field: "von_mises", range: null, factor: null, mesh: null, obstacle: is2d, axis: null, place: 0.5, side: 1, explosion: 0 };
     this.stages = stagesOf(data.certificate);
     this.bodies = new Bodies(this.stages.all, () => this.set({ bodies: true }));
-    this.build(is2d);
+    this.build(is2d, show);
   }
 
-  build(is2d) {
+  build(is2d, show) {
     this.picture = new Picture(is2d, "Mesh and fields", paperWidth);
     this.legend = element("div", { class: "view-legend" });
     this.note = element("p", { class: "note" });
-    this.controls = new FieldControls(this.levels.at(-1), this.levels.length, this.stages, (changes) => this.set(changes), {
+    const last = this.levels.at(-1);
+    const seen = this.state.way === "body" ? { ...last, profiles: undefined } : last; // there are no obstacles around the body
+    this.controls = new FieldControls(seen, this.levels.length, this.stages, (changes) => this.set(changes), {
       home: () => { this.home(); this.picture.draw(); },
       svgs: () => { this.picture.keep(); return [this.picture.print]; },
-      rows: () => fieldRows(this.current, this.shown, this.field),
-    });
+      rows: () => (this.current.meridian ? fieldRows(this.current.meridian, this.current.meridian, this.field) : fieldRows(this.current, this.shown, this.field)),
+    }, { names: showsMeridian() ? ways : [], show: (way) => show(way, this.state) });
     this.element = element("div", { class: "fields" }, this.controls.element,
       element("div", { class: "view-row" }, this.picture.frame, this.picture.print, this.legend), this.note,
       element("p", { class: "note screen-only" }, `Drag to ${is2d ? "move" : "turn, with Shift to move"}, scroll after a click (or with Ctrl) to `
         + "zoom, double-click for the whole body; keys: arrows, +, \u2212, 0. With fingers: tap first, then drag and pinch; tap elsewhere to scroll on."));
   }
 
-  /** Draws the first picture; afterwards the page is ready. */
-  async start() {
-    this.volume = await this.readVolume();
-    await this.set({});
+  /** Draws the first picture with what was chosen before; afterwards the page is ready. */
+  async start(chosen) {
+    this.volume ??= await this.readVolume();
+    await this.set(chosen);
   }
 
   /** Reads the interior of the body on the last level, relative to its centre. */
@@ -63,8 +68,8 @@ class FieldView {
     return { ...volume, box, dimension: 3, nVertices: volume.points.length / 3, vertexBody: volume.bodies };
   }
 
-  surface(index) {
-    return readSurface(this.levels[index]);
+  async surface(index) {
+    return shownAs(await readSurface(this.levels[index]), this.state.way);
   }
 
   /** Applies changes of the state and shows it. Of overlapping changes the last one counts. */
@@ -98,7 +103,7 @@ class FieldView {
     this.bodies.take(surface);
     if (!this.camera) this.prepare(surface);
     this.state.mesh ??= surface.nFaces * 3 * surface.subdivision <= manySegments;
-    this.fields = fieldsOf(surface, this.components);
+    this.fields = fieldsOf(surface.meridian ?? surface, this.components);
     this.controls.setFields(this.fields);
   }
 
@@ -136,8 +141,8 @@ class FieldView {
 
   takeField(field) {
     const { current: surface, picture: { scene } } = this;
-    const values = field.corners(surface);
-    const usual = colourRange(surface, field, values);
+    const values = field.corners(surface.meridian ?? surface);
+    const usual = colourRange(surface.meridian ?? surface, field, values);
     this.range = this.state.range ? { ...usual, ...this.state.range } : usual;
     if (!this.field) Object.assign(this.camera, firstDirection(surface, values, this.range, this.up));
     else if (field.contact && !this.field.contact) Object.assign(this.camera, contactDirection(surface, this.camera));
@@ -169,8 +174,10 @@ class FieldView {
     return this.drawn(cornerPositions(this.shown, of(this.shown)), of, 3);
   }
 
+  /** On a meridian the places that the pointer is told are those there. */
   takeUndeformed() {
-    this.undeformed = this.positions(0);
+    const { meridian } = this.shown;
+    this.undeformed = meridian ? cornerPositions(meridian, vertexPositions(meridian, 0)) : this.positions(0);
   }
 
   takePositions() {
@@ -217,12 +224,18 @@ class FieldView {
     const { current: surface, field } = this;
     const value = hit.corner < this.values.length ? valueAt(this.values, hit) : null;
     const text = valueText(field, value, field.kind === "category" ? this.categories(field) : []);
-    return [element("strong", {}, text), element("br"), placeText(surface, this.undeformed, hit)];
+    return [element("strong", {}, text), element("br"), placeText(surface.meridian ?? surface, this.undeformed, hit)];
   }
 }
 
 export function fieldsSection(data, components) {
   if (data.fields.length === 0) return { element: null, start: async () => {} };
-  const view = new FieldView(data, components);
-  return { element: section("fields", "Fields", "Mesh and fields", null, view.element), start: () => view.start(), view };
+  const views = new Map();
+  const place = element("div");
+  const show = async (way, { level, field, range, factor, mesh } = {}) => {
+    if (!views.has(way)) views.set(way, new FieldView(data, components, way, show));
+    place.replaceChildren(views.get(way).element);
+    await views.get(way).start(level === undefined ? {} : { level, field, range, factor, mesh });
+  };
+  return { element: section("fields", "Fields", "Mesh and fields", null, place), start: () => show("meridian") };
 }

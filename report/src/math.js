@@ -13,12 +13,14 @@ const norm = (...inner) => bracket("\u2016", inner, "\u2016");
 const sigma = () => i("\u03c3");
 const residual = () => bracket("\u27e8", [i("R"), bracket("(", [sub(i("u"), i("h"))], ")"), o(","), i("v")], "\u27e9");
 const gradientNorm = () => sup(norm(i("\u2207", true), i("v")), n(2));
+const hoopNorm = () => sup(norm(sub(i("v"), i("r")), o("/"), i("r")), n(2));
 const facetNorm = () => element("math:msubsup", {}, norm(i("v")), i("F"), n(2));
 const sumOver = (index) => sub(o("\u2211", { movablelimits: "false" }), i(index));
 
 /** The fragments of the texts, the longest first, and their markup. */
 const fragments = [
   ["||grad v||^2", () => [gradientNorm()]],
+  ["||v_r / r||^2", () => [hoopNorm()]],
   ["||v||_F^2 / h_F", () => [facetNorm(), o("/"), sub(i("h"), i("F"))]],
   ["||sigma(u_h)||", () => [norm(sigma(), bracket("(", [sub(i("u"), i("h"))], ")"))]],
   ["||sigma_h||", () => [norm(sub(sigma(), i("h")))]],
@@ -68,10 +70,10 @@ export function judgementFormula() {
     i("d"), o("="), norm(i("v"), o("\u2212"), sub(i("u"), i("h"))));
 }
 
-/** The formula of the guarantee. */
-export function guaranteeFormula() {
+/** The formula of the guarantee; `isMeridian`: with the hoop strain of a body of revolution. */
+export function guaranteeFormula(isMeridian) {
   const v = row(i("v"), o("\u2208"), sup(i("H"), n(1)));
-  const root = element("math:msqrt", {}, gradientNorm(), o("+"), sumOver("F"), facetNorm(), o("/"), sub(i("h"), i("F")));
+  const root = element("math:msqrt", {}, gradientNorm(), ...(isMeridian ? [o("+"), hoopNorm()] : []), o("+"), sumOver("F"), facetNorm(), o("/"), sub(i("h"), i("F")));
   return display(element("math:munder", {}, o("max", { movablelimits: "false" }), v),
     element("math:mfrac", {}, residual(), root), o("\u2264"), total());
 }

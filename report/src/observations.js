@@ -1,12 +1,11 @@
 // Sections and probes: tables, charts along lines, and over load steps.
 
+import { axisNames, stressNames } from "./axes.js";
 import { lineChart } from "./charts.js";
 import { element, number, section, table, withoutNoise } from "./dom.js";
 import { pathChart } from "./history.js";
 import { headed, unit } from "./units.js";
 
-const axes = ["x", "y", "z"];
-const entries = (d) => (d === 2 ? ["xx", "yy", "zz", "xy"] : ["xx", "yy", "zz", "xy", "yz", "xz"]);
 const fewRows = 4; // of a probe; longer ones are charts
 const fileName = (what, name) => `${what}_${name.replaceAll(/\W+/g, "_")}`;
 const stressOf = (point) => point.equilibrated_stress ?? point.stress;
@@ -33,8 +32,8 @@ function sectionTable({ sections, d }) {
 function probeTable(probes, d) {
   const rows = probes.flatMap(({ name, points }) => points.map((point) => [name, point.region, ...withoutNoise(point.displacement).map((value) => number(value, 6)),
     ...withoutNoise(stressOf(point)).map((value) => number(value, 5)), number(point.difference, 2)]));
-  return table(["probe", "region", ...axes.slice(0, d).map((axis) => headed(`#u ${axis}`, unit("length"))),
-    ...entries(d).map((entry) => headed(`#stress ${entry}`, unit("stress"))), headed("#difference", unit("stress"))], rows, { class: "probes" });
+  return table(["probe", "region", ...axisNames(d).map((axis) => headed(`#u ${axis}`, unit("length"))),
+    ...stressNames(d).map((entry) => headed(`#stress ${entry}`, unit("stress"))), headed("#difference", unit("stress"))], rows, { class: "probes" });
 }
 
 /** Displacement and stress along a line. */
@@ -43,11 +42,11 @@ function lineCharts({ name, points }, d) {
   const common = { x: points.map((point) => Math.hypot(...point.x.map((x, i) => x - first.x[i]))), xLabel: "distance along the line", xUnit: unit("length"),
     groups: points.map(({ body, region }) => `${body}, ${region}`), place: (k) => `(${points[k].x.map((x) => number(x, 4)).join(", ")}), ${points[k].region}`,
     row: (k) => ({ point: points[k].point, region: points[k].region }) };
-  const stress = entries(d).map((entry, i) => ({ name: entry, values: points.map((point) => stressOf(point)[i]) }));
+  const stress = stressNames(d).map((entry, i) => ({ name: entry, values: points.map((point) => stressOf(point)[i]) }));
   const difference = first.difference === null ? [] : [{ name: "difference", values: points.map((point) => point.difference) }];
   return [
     lineChart({ ...common, title: `${name}: displacement`, name: fileName("displacement", name), yLabel: "displacement", yUnit: unit("length"),
-      lines: axes.slice(0, d).map((axis, i) => ({ name: `u ${axis}`, values: points.map((point) => point.displacement[i]) })) }),
+      lines: axisNames(d).map((axis, i) => ({ name: `u ${axis}`, values: points.map((point) => point.displacement[i]) })) }),
     lineChart({ ...common, title: `${name}: stress`, name: fileName("stress", name), yLabel: "stress", yUnit: unit("stress"), lines: [...stress, ...difference] })];
 }
 
@@ -66,9 +65,9 @@ function stepCharts(run) {
     const point = (step) => at(step).points[0];
     return [
       chart(`${name}: displacement`, fileName("steps_displacement", name), "displacement", unit("length"),
-        axes.slice(0, d).map((axis, i) => ({ name: `u ${axis}`, value: ({ displacement }) => displacement[i] })), point),
+        axisNames(d).map((axis, i) => ({ name: `u ${axis}`, value: ({ displacement }) => displacement[i] })), point),
       chart(`${name}: stress`, fileName("steps_stress", name), "stress", unit("stress"),
-        entries(d).map((entry, i) => ({ name: entry, value: (of) => stressOf(of)[i] })), point)];
+        stressNames(d).map((entry, i) => ({ name: entry, value: (of) => stressOf(of)[i] })), point)];
   });
   return [...ofSections, ...ofPoints];
 }

@@ -1,6 +1,7 @@
 // The SVG overlay of the picture of a surface: axes and the contact boundary in 2D, directions in 3D.
 
 import { scaleLinear } from "d3";
+import { axisNames, showsMeridian } from "./axes.js";
 import { statusColours } from "./components.js";
 import { element, number } from "./dom.js";
 import { obstaclePoints } from "./obstacle.js";
@@ -91,7 +92,7 @@ function statusLines({ arc, points, displacement, bodies, status }, box, factor,
 }
 
 /** Axes around a picture; `names`: of the horizontal and the vertical axis. */
-export function axes({ box }, { target, scale }, { left, top, width, height }, names = ["x", "y"]) {
+export function axes({ box }, { target, scale }, { left, top, width, height }, names = axisNames(2)) {
   const [cx, cy] = [box.centre[0] + target[0], box.centre[1] + target[1]];
   const reach = (scale * width) / height;
   const x = scaleLinear([cx - reach, cx + reach], [left, left + width]);
@@ -100,7 +101,7 @@ export function axes({ box }, { target, scale }, { left, top, width, height }, n
   return [
     ...x.ticks(Math.max(2, width / 90)).flatMap((tick) => [
       element("svg:line", { x1: x(tick), x2: x(tick), y1: top + height, y2: top + height + 4 }),
-      element("svg:text", { x: x(tick), y: top + height + 16, "text-anchor": "middle" }, label(tick))]),
+      element("svg:text", { x: x(tick), y: top + height + 16, "text-anchor": "middle" }, label(showsMeridian() ? Math.abs(tick) : tick))]),
     ...y.ticks(Math.max(3, height / 60)).flatMap((tick) => [
       element("svg:line", { x1: left - 4, x2: left, y1: y(tick), y2: y(tick) }),
       element("svg:text", { x: left - 7, y: y(tick) + 4, "text-anchor": "end" }, label(tick))]),

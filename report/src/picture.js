@@ -1,5 +1,6 @@
 // A picture of triangles in colours: the canvas, what lies over it, what the pointer is told, and its copy for paper.
 
+import { axisNames } from "./axes.js";
 import { bindCamera } from "./camera.js";
 import { element, number, withoutNoise } from "./dom.js";
 import { cornerAt } from "./pick.js";
@@ -107,7 +108,7 @@ export class Picture {
 
 /** The place of a hit in the undeformed body, as text; `undeformed`: positions of the corners about the centre of the surface. */
 export function placeText({ dimension, box }, undeformed, { corner, weights }) {
-  const axes = ["x", "y", "z"].slice(0, dimension);
+  const axes = axisNames(dimension);
   const place = withoutNoise(axes.map((_, c) => box.centre[c] + weights.reduce((sum, w, i) => sum + w * undeformed[3 * (corner + i) + c], 0)),
     100 * box.diagonal);
   return axes.map((axis, c) => `${axis} = ${number(place[c], 4)}`).join(", ");

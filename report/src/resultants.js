@@ -1,5 +1,6 @@
 // Contact resultants: forces on each boundary, further data of pairs, and the bodies with their parts of the bound.
 
+import { axisNames, showsMeridian } from "./axes.js";
 import { count, element, number, percent, table, withoutNoise } from "./dom.js";
 import { headed, unit } from "./units.js";
 
@@ -18,13 +19,13 @@ function forceTable(run, parts) {
   const row = (name, part) => {
     const [normal, tangential, length, ...force] = withoutNoise([part.normal, part.tangential, part.abs_tangential, ...part.force])
       .map((value) => number(value, 6));
-    return [name, normal, tangential, length, `(${force.join(", ")})`,
+    return [name, normal, tangential, length, showsMeridian() ? force[1] : `(${force.join(", ")})`, // around the axis the radial forces cancel
       ...(isSliding ? [number(part.sliding?.sliding_factor), number(part.sliding?.safety_factor)] : [])];
   };
   const rows = parts.map(([name, part]) => row(name, part));
   if (parts.length > 1) rows.push(row("in all", run.contact));
   return table(["boundary", headed("#normal", force), headed("#tangential", force), headed("#|tangential|", force),
-    headed(`#force on the ${parts.some(([, { master }]) => master) ? "slave" : "body"}`, force), ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows);
+    headed(`#force ${showsMeridian() ? `${axisNames(2)[1]} ` : ""}on the ${parts.some(([, { master }]) => master) ? "slave" : "body"}`, force), ...(isSliding ? ["#mobilised friction", "#safety against sliding"] : [])], rows);
 }
 
 function pairTables(run, pairs) {

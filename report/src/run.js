@@ -1,5 +1,6 @@
 // The page of a run, with the data of app/page/report_page.cpp.
 
+import { nameAxes } from "./axes.js";
 import { boundSection } from "./bound.js";
 import { coloured } from "./components.js";
 import { contactSection } from "./contact.js";
@@ -17,6 +18,7 @@ import { header } from "./verdict.js";
 export function runPage(data, trueErrors) {
   const { certificate: run, machine } = data;
   nameUnits(run.units);
+  nameAxes(run.model);
   for (const { level, ...errors } of trueErrors ?? [])
     Object.assign(run.levels.find((other) => other.level === level) ?? {}, errors);
   const components = coloured(data.components.filter(({ part }) => part !== "combined"));

@@ -1,4 +1,6 @@
-// Stresses derived from the components of the equilibrated stress.
+// Stresses derived from the components of the equilibrated stress, on a meridian of that of u_h.
+
+import { stressNames } from "./axes.js";
 
 /** The six components xx, yy, zz, xy, yz, xz at index i of the arrays; in 2D zz = `ratio(i)` (xx + yy), and what an initial stress adds. */
 function tensorAt(stress, ratio) {
@@ -26,14 +28,12 @@ export function principal([xx, yy, zz, xy, yz, xz]) {
 
 /** The stresses that a picture can show: id, label, kind and value(tensor). */
 export function stressFields(dimension) {
-  const names = dimension === 2 ? ["xx", "yy", "zz", "xy"] : ["xx", "yy", "zz", "xy", "yz", "xz"];
-  const all = ["xx", "yy", "zz", "xy", "yz", "xz"];
   return [
     { id: "von_mises", label: "von Mises", kind: "sequential", value: vonMises },
     { id: "s1", label: "largest principal, \u03c3\u2081", kind: "diverging", value: (tensor) => principal(tensor)[0] },
     { id: "s2", label: "middle principal, \u03c3\u2082", kind: "diverging", value: (tensor) => principal(tensor)[1] },
     { id: "s3", label: "smallest principal, \u03c3\u2083", kind: "diverging", value: (tensor) => principal(tensor)[2] },
-    ...names.map((name) => ({ id: `s${name}`, label: `\u03c3 ${name}`, kind: "diverging", value: (tensor) => tensor[all.indexOf(name)] })),
+    ...stressNames(dimension).map((name, i) => ({ id: `s${name}`, label: `\u03c3 ${name}`, kind: "diverging", value: (tensor) => tensor[i] })),
   ];
 }
 

@@ -2,6 +2,7 @@
 // it.
 
 import { unpackAll } from "./arrays.js";
+import { axisNames, showsMeridian } from "./axes.js";
 import { contactValues } from "./contact_parts.js";
 import { latticeSides, latticeTriangles } from "./lattice.js";
 import { stressFields, stressValues } from "./stress.js";
@@ -72,7 +73,7 @@ function bodiesOf({ body, faces }, nVertices, nFacePoints) {
   return { nBodies: last + 1, vertexBody };
 }
 
-function boundingBox({ points, dimension }) {
+export function boundingBox({ points, dimension }) {
   const low = [Infinity, Infinity, dimension === 2 ? 0 : Infinity];
   const high = [-Infinity, -Infinity, dimension === 2 ? 0 : -Infinity];
   for (let i = 0; i < points.length; ++i) {
@@ -151,11 +152,12 @@ function perPoint({ points }, value) {
 /** The fields of a surface: id, label, unit, group, kind of scale, corners(surface), and inside(volume) where known there. */
 export function fieldsOf(surface, components) {
   const d = surface.dimension;
-  const axes = ["x", "y", "z"].slice(0, d);
+  const axes = axisNames(d);
   const hasContact = surface.nContactFaces > 0 || surface.pairs?.length > 0;
   const contactField = (id, label, measures) => ({ id: `contact-${id}`, label, unit: unit(measures), group: "Contact", kind: "sequential", contact: true,
     corners: (s) => contactValues(s, id) });
   const etaUnit = unit("stress_norm");
+  const stressGroup = showsMeridian() ? "Stress (of u_h)" : "Stress (equilibrated)"; // on a meridian that is r times a stress
   return [
     { id: "u", label: "displacement, length", unit: unit("length"), group: "Solution", kind: "sequential",
       corners: (s) => spread.vertex(s, (v) => Math.hypot(...axes.map((_, c) => s.displacement[d * v + c]))),
@@ -163,7 +165,7 @@ export function fieldsOf(surface, components) {
     ...axes.map((axis, c) => ({ id: `u${axis}`, label: `displacement, ${axis}`, unit: unit("length"), group: "Solution", kind: "diverging",
       corners: (s) => spread.vertex(s, (v) => s.displacement[d * v + c]),
       inside: (volume) => perPoint(volume, (v) => volume.displacement[d * v + c]) })),
-    ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: unit("stress"), group: "Stress (equilibrated)", trimmed: true,
+    ...stressFields(d).map(({ value, ...field }) => ({ ...field, unit: unit("stress"), group: stressGroup, trimmed: true,
       corners: (s) => spreadStress(s, value), inside: (volume) => stressValues(volume.stress, null, value) })),
     ...(surface.eta?.tot ? [{ id: "eta-tot", label: "\u03b7 of the cell, total", unit: etaUnit, group: "Error", kind: "logarithmic",
       corners: (s) => spread.face(s, s.eta.tot) }] : []),
@@ -186,7 +188,7 @@ export function fieldRows(surface, shown, { id, corners }) {
   const rows = new Map();
   corners(surface).forEach((value, c) => {
     const place = shown === surface ? surface.lattice[c] : c;
-    if (!rows.has(place)) rows.set(place, { ...Object.fromEntries(["x", "y", "z"].slice(0, d).map((axis, i) => [axis, points[d * vertex[c] + i]])), [id]: value });
+    if (!rows.has(place)) rows.set(place, { ...Object.fromEntries(axisNames(d).map((axis, i) => [axis, points[d * vertex[c] + i]])), [id]: value });
   });
   return [...rows.values()];
 }

@@ -111,8 +111,8 @@ export function pageHeader({ program, machine, title, file, kind, verdict, warni
 }
 
 /** "2D, degree 1, friction: tresca" */
-export function kindOf({ d, p, friction }) {
-  return `${d}D, degree ${p}${friction ? `, friction: ${friction}` : ", no contact"}`;
+export function kindOf({ d, p, friction, model }) {
+  return `${model ?? `${d}D`}, degree ${p}${friction ? `, friction: ${friction}` : ", no contact"}`;
 }
 
 /** `showContact(summary)` adds what is known once the data are unpacked. */
