@@ -130,7 +130,7 @@ std::string mesh_text(std::string_view caption, std::int64_t cells, std::int64_t
 
 std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh, const std::string& solver)
 {
-  const char* size = facts.dimension == 2 ? "area" : "volume";
+  const char* size = facts.body_dimension() == 2 ? "area" : "volume";
   std::string text = header_text(facts, mesh);
   text += line_if_any("solver", solver);
   text += "regions\n";
@@ -141,8 +141,9 @@ std::string check_text(const io::CaseFacts& facts, const io::MeshFacts& mesh, co
   text += "boundaries\n";
   for (const io::BoundaryFacts& boundary : mesh.boundaries)
     text += fmt::format("  {:<{}}  {}, {} {:.6g}{}: {}\n", boundary.name, name_width(mesh.boundaries),
-                        count(boundary.facets, "facet", "facets"), facts.dimension == 2 ? "length" : "area",
-                        boundary.measure, facts.behind(UnitOf::boundary), boundary.condition);
+                        count(boundary.facets, "facet", "facets"),
+                        facts.body_dimension() == 2 ? "length" : "area", boundary.measure,
+                        facts.behind(UnitOf::boundary), boundary.condition);
   return text;
 }
 

@@ -37,8 +37,8 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    region.measure += problem.full_circle() * map.measure() *
-                      problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
+    region.measure +=
+        problem.full_circle() * map.measure() * problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
   }
   for (RegionFacts& region : regions)
   {
@@ -89,7 +89,10 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
   {
     BoundaryFacts& boundary = facet.tag < 0 ? boundaries.back() : boundaries[facet.tag];
     ++boundary.facets;
-    boundary.measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    const Point<dim> middle =
+        mesh::facet_map(mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
+    boundary.measure += problem.full_circle() * problem.weight(middle) *
+                        mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   for (BoundaryFacts& boundary : boundaries)
   {

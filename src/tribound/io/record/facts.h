@@ -37,29 +37,20 @@ struct CaseFacts
   std::vector<std::pair<std::string, std::string>> quantity_units{};
   /// What the case leaves out of the problem that it stands for, in the words of its author.
   std::vector<std::string> not_covered{};
-  /// Whether the mesh is the meridian of a body of revolution. Forces are those of the full circle.
+  /// Whether the mesh is the meridian of a body of revolution.
   bool is_axisymmetric = false;
 
+  /// Of the body: 3 for one of revolution.
+  [[nodiscard]] int body_dimension() const { return is_axisymmetric ? 3 : dimension; }
   /// "MPa"; empty where no units are named.
-  [[nodiscard]] std::string label(problem::UnitOf what) const
-  {
-    return units.label(what, dimension_of(what));
-  }
+  [[nodiscard]] std::string label(problem::UnitOf what) const { return units.label(what, body_dimension()); }
   /// " MPa", to be appended to a number; empty where no units are named.
   [[nodiscard]] std::string behind(problem::UnitOf what) const
   {
-    return units.behind(what, dimension_of(what));
+    return units.behind(what, body_dimension());
   }
   /// The unit of the [[quantity]] of this name; empty: none.
   [[nodiscard]] std::string unit_of(std::string_view quantity) const;
-
- private:
-  /// On a meridian lengths and areas of the mesh are plane, forces and norms those of a body.
-  [[nodiscard]] int dimension_of(problem::UnitOf what) const
-  {
-    const bool is_of_mesh = what == problem::UnitOf::boundary || what == problem::UnitOf::body;
-    return is_axisymmetric && !is_of_mesh ? 3 : dimension;
-  }
 };
 
 struct RegionFacts

@@ -61,10 +61,12 @@ void add_moments(Resultants& result, const contact::NitscheForm<dim>& form, std:
   const contact::ContactMoments<dim> in_equilibrium = contact::contact_moments(form, running, tag);
   const double rounding = round_off * m.scale;
   result.moment = known_components(m.slave, (m.slave - in_equilibrium.slave).norm() + rounding);
-  if (form.problem().is_axisymmetric()) result.moment.assign(result.moment.size(), 0.0);  // they cancel, too
   if (result.pair)
     result.pair->moment_on_master =
         known_components(m.master, (m.master - in_equilibrium.master).norm() + rounding);
+  if (!form.problem().is_axisymmetric()) return;
+  result.moment.assign(result.moment.size(), 0.0);  // around the axis they cancel, too
+  if (result.pair) result.pair->moment_on_master = result.moment;
 }
 
 template <int dim>
@@ -78,13 +80,17 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
                       .largest_gap = -std::numeric_limits<double>::infinity()};
   std::array<double, 4> sums{};
   auto& [segments, covered, covered_master, all] = sums;
+  const Point<dim - 1> middle = Point<dim - 1>::Constant(1.0 / dim);
+  const auto swept = [&](const auto& map, double measure)
+  { return form.problem().full_circle() * form.problem().weight(map(middle)) * measure; };
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.slave.facet.tag != tag) continue;
     ++segments;
-    covered += segment.measure;
-    covered_master += contact::simplex_map(mesh, *segment.master).measure;
+    covered += swept(contact::simplex_map(mesh, segment.slave), segment.measure);
+    const auto master = contact::simplex_map(mesh, *segment.master);
+    covered_master += swept(master, master.measure);
     for (const contact::ContactState<dim>& state : form.contact_states(u, k))
     {
       figures.smallest_gap = std::min(figures.smallest_gap, state.gap);
@@ -93,7 +99,9 @@ PairFigures pair_figures(const contact::NitscheForm<dim>& form, std::span<const 
     }
   }
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
-    if (facet.tag == tag) all += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    if (facet.tag == tag)
+      all += swept(mesh::facet_map(mesh, facet.cell, facet.local),
+                   mesh::facet_geometry(mesh, facet.cell, facet.local).measure);
   const Ranks& ranks = mesh.ranks();
   ranks.sum(std::span(sums));
   figures.segments = static_cast<decltype(figures.segments)>(segments);
