@@ -2,7 +2,7 @@
 // obstacles values over a coordinate.
 
 import * as Plot from "@observablehq/plot";
-import { axisNames } from "./axes.js";
+import { axisNames, showsMeridian } from "./axes.js";
 import { chartStyle, responsive } from "./charts.js";
 import { statusColours, statusNames } from "./components.js";
 import { contactSides, partArea } from "./contact_parts.js";
@@ -182,7 +182,8 @@ function summaryOfProfiles(profiles) {
   const summary = { size: 0, open: 0, largest: 0, place: null };
   for (const { arc, status, pressure, points } of profiles)
     for (let i = 0; i < arc.length; ++i) {
-      const half = [i - 1, i].reduce((sum, k) => sum + (k >= 0 && k + 1 < arc.length ? (arc[k + 1] - arc[k]) / 2 : 0), 0);
+      const around = showsMeridian() ? 2 * Math.PI * points[2 * i] : 1;
+      const half = around * [i - 1, i].reduce((sum, k) => sum + (k >= 0 && k + 1 < arc.length ? (arc[k + 1] - arc[k]) / 2 : 0), 0);
       summary.size += half;
       if (status[i] === 0) summary.open += half;
       if (pressure[i] > summary.largest) Object.assign(summary, { largest: pressure[i], place: [points[2 * i], points[2 * i + 1]] });

@@ -68,14 +68,14 @@ function balanceTable(balance, d) {
 
 /** The units of the numbers. */
 function unitsText({ d, units }) {
-  const per = (depth) => (showsMeridian() ? ", of the full circle; energies and norms are per radian" : d === 2 ? depth : "");
+  const per = (depth) => (showsMeridian() ? ", of the full circle; norms of stresses are those of a radian" : d === 2 ? depth : "");
   if (!units) return `The case names no units: lengths, stresses and forces are in those of its numbers${per(", forces per unit of depth")}.`;
   return `Lengths are in ${unit("length")}, stresses in ${unit("stress")}, forces in ${unit("force")}${per(`, per ${unit("length")} of depth`)}.`;
 }
 
 export function caseSection(data) {
   const run = data.certificate;
-  const [body, boundary] = run.d === 2 ? ["area", "length"] : ["volume", "area"];
+  const [body, boundary] = run.d === 2 && !showsMeridian() ? ["area", "length"] : ["volume", "area"];
   return section("case", "Case", "The case", null, caseText(data.case),
     table(["region", "#cells", headed(`#${body}`, unit("body")), "material"],
       run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),

@@ -29,7 +29,8 @@ function forceTable(run, parts) {
 }
 
 function pairTables(run, pairs) {
-  const [size, about] = run.d === 2 ? ["length", "the origin"] : ["area", "the axes through the origin"];
+  const isMeridian = showsMeridian();
+  const [size, about] = run.d === 2 && !isMeridian ? ["length", "the origin"] : ["area", "the axes through the origin"];
   const [covered, moments] = [unit("boundary"), unit("moment")];
   const isTied = pairs.some(([, { largest_tension: tension }]) => tension > 0);
   return [element("h3", {}, "Pairs"),
@@ -38,9 +39,9 @@ function pairTables(run, pairs) {
       pairs.map(([name, pair]) => [name, pair.master.join(", "), pair.law, count(pair.segments), number(pair.covered), percent(pair.covered_share),
         number(pair.covered_master), withoutNoise([pair.gap.smallest, pair.gap.largest], run.max_displacement).map((gap) => number(gap, 3)).join(" to "),
         ...(isTied ? [number(pair.largest_tension)] : [])])),
-    table(["slave", headed("#moment on it", moments), headed("#moment on the master", moments)],
+    ...(isMeridian ? [] : [table(["slave", headed("#moment on it", moments), headed("#moment on the master", moments)],
       pairs.map(([name, pair]) => [name, moment(pair.moment), moment(pair.moment_on_master)])),
-    element("p", { class: "note" }, `Moments of the contact traction about ${about}. They cancel where the two sides coincide.`)];
+    element("p", { class: "note" }, `Moments of the contact traction about ${about}. They cancel where the two sides coincide.`)])];
 }
 
 function bodyTable(run) {

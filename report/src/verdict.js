@@ -1,5 +1,6 @@
 // The result of a run, in one sentence and a few figures.
 
+import { showsMeridian } from "./axes.js";
 import { count, element, number, percent, plural } from "./dom.js";
 import { typeset } from "./math.js";
 import { intervalText } from "./quantities.js";
@@ -90,7 +91,7 @@ function figures(run, contact) {
       ...quantityFigures(run),
       safetyFigure(run),
       contact?.largest > 0 ? figure(number(contact.largest), "largest contact pressure", [unit("stress"), placeText(contact.place)].filter(Boolean).join(", ")) : null,
-      contact ? figure(percent(contact.open / contact.size), run.d === 2 ? "length that is open" : "area that is open",
+      contact ? figure(percent(contact.open / contact.size), run.d === 2 && !showsMeridian() ? "length that is open" : "area that is open",
         measured(`${number(contact.open, 3)} of ${number(contact.size, 3)}`, unit("boundary"))) : null,
       run.contact ? figure(number(-run.contact.normal), "contact force, normal", unit("force")) : null,
       figure(number(run.max_displacement), "largest displacement", unit("length"))] : []),
