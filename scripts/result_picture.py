@@ -126,8 +126,9 @@ class Body:
         axes.add_collection(LineCollection(flat[skin.edges[skin.sharp]], colors="#222222", linewidths=0.8, capstyle="round"))
         left, right, bottom, top = self.window
         margin = 0.02 * max(right - left, top - bottom)
+        across, up = ("r", "z") if run.certificate.get("model") == "axisymmetric" else ("x", "y")
         axes.set(xlim=(left - margin, right + margin), ylim=(bottom - margin, top + margin), aspect="equal",
-                 xlabel=run.labelled("x", "length"), ylabel=run.labelled("y", "length"))
+                 xlabel=run.labelled(across, "length"), ylabel=run.labelled(up, "length"))
         axes.grid(visible=False)
 
     def draw_solid(self, axes, _, mesh, width):
