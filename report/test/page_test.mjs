@@ -9,6 +9,8 @@ import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
 import { saved, useBodies, useFields, usePlans } from "./fields.mjs";
 import { judge, useJudgedSteps, useJudgement } from "./judgement.mjs";
+import { judge, useJudgement } from "./judgement.mjs";
+import { revolution, useRevolution } from "./revolution.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
 
@@ -463,6 +465,11 @@ async function checkJoint(browser) {
   await page.close();
 }
 
+async function checkRevolution(of) {
+  const directory = solve("revolution", revolution);
+  report("revolution", directory, await useRevolution(of, directory, `${results}/revolution`));
+}
+
 /** The page of a judgement in 2D and 3D, in 3D also without WebGL. */
 async function checkJudgements(browser) {
   for (const name of ["block", "cube"]) {
@@ -520,6 +527,7 @@ try {
     await page.close();
   }
   await checkJoint(browser);
+  await checkRevolution(browser);
   await checkStudy(browser, solve("study", study));
   await checkSweep(browser);
   await checkJudgements(browser);
