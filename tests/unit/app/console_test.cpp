@@ -64,6 +64,24 @@ TEST(Console, HeaderNamesTheUnits)
               HasSubstr("stresses in MPa, forces in N, bounds in MPa mm^(3/2)\n"));
 }
 
+TEST(Console, BodiesOfRevolution)
+{
+  io::CaseFacts revolved = facts_with_units();
+  revolved.is_axisymmetric = true;
+  EXPECT_THAT(app::header_text(revolved, mesh), AllOf(HasSubstr("forces in N, bounds in MPa mm^(3/2)\n"),
+                                                      HasSubstr("method        axisymmetric, degree 2")));
+  EXPECT_THAT(app::check_text(revolved, mesh, ""),
+              AllOf(HasSubstr("16 cells, volume 2 mm^3: E"), HasSubstr("4 facets, area 2 mm^2: contact")));
+  const certify::Balance balance{{1, 0.5},
+                                 {{certify::BalanceKind::load, "top", "pressure", {0, -0.5}, {0}},
+                                  {certify::BalanceKind::contact, "bottom", "contact", {0, 0.5}, {0}}}};
+  EXPECT_EQ(app::balance_text(balance, revolved),
+            "balance                                    force z\n"
+            "              load      top, pressure         -0.5\n"
+            "              contact   bottom                 0.5\n"
+            "              forces of the full circle in N on the body\n");
+}
+
 TEST(Console, CheckHasSizesWithUnits)
 {
   EXPECT_THAT(app::check_text(facts_with_units(), mesh, ""),
