@@ -42,7 +42,8 @@ class FieldView {
     this.legend = element("div", { class: "view-legend" });
     this.note = element("p", { class: "note" });
     const last = this.levels.at(-1);
-    const seen = this.state.way === "body" ? { ...last, profiles: undefined } : last; // there are no obstacles around the body
+    const { way } = this.state; // bodies are drawn apart on the meridian only, and obstacles not around the body
+    const seen = way === "meridian" ? last : { ...last, interfaces: undefined, ...(way === "body" ? { profiles: undefined } : {}) };
     this.controls = new FieldControls(seen, this.levels.length, this.stages, (changes) => this.set(changes), {
       home: () => { this.home(); this.picture.draw(); },
       svgs: () => { this.picture.keep(); return [this.picture.print]; },
