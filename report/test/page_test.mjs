@@ -9,7 +9,6 @@ import { pathToFileURL } from "node:url";
 import { browserPath, colours, launch, openPage } from "./browser.mjs";
 import { saved, useBodies, useFields, usePlans } from "./fields.mjs";
 import { judge, useJudgedSteps, useJudgement } from "./judgement.mjs";
-import { judge, useJudgement } from "./judgement.mjs";
 import { revolution, useRevolution } from "./revolution.mjs";
 
 const [program, folder, results] = process.argv.slice(2);
