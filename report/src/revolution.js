@@ -45,7 +45,8 @@ function mirrored(surface) {
   });
   const segments = (all) => concatenated(all, shifted(all, nVertices));
   const result = { ...surface, points: both(points), displacement: both(displacement), nVertices: 2 * nVertices,
-    vertex: concatenated(vertex, shifted(vertex, nVertices)), vertexBody: surface.vertexBody && twice(surface.vertexBody), profiles,
+    vertex: concatenated(vertex, shifted(vertex, nVertices)), interfaces: undefined, profiles,
+    vertexBody: surface.vertexBody && twice(surface.vertexBody),
     meridian: { ...surface, vertex: twice(vertex), lattice: twice(lattice) },
     segments: () => ({ all: segments(surface.segments().all), boundary: segments(offAxis(surface, surface.segments().boundary)) }) };
   return Object.assign(result, { box: boundingBox(result) });
@@ -88,7 +89,8 @@ function revolved(surface) {
   const last = nSteps * nVertices;
   const ends = (all) => concatenated(all, shifted(all, last));
   const result = { ...surface, dimension: 3, points: sweep(points), displacement: sweep(displacement), nVertices: (nSteps + 1) * nVertices,
-    vertex: concatenated(vertex, shifted(vertex, last), around), nBodies: 1, vertexBody: null, profiles: undefined,
+    vertex: concatenated(vertex, shifted(vertex, last), around), interfaces: undefined, profiles: undefined,
+    vertexBody: surface.vertexBody && concatenated(...Array(nSteps + 1).fill(surface.vertexBody)),
     meridian: { ...surface, vertex: concatenated(vertex, vertex, Uint32Array.from(places, (place) => faces[place])), lattice: concatenated(lattice, lattice, places) },
     words: "Shown are three quarters of the body of revolution.", direction: { azimuth: 50, elevation: 25 }, // into the quarter that is left out
     segments: () => ({ all: ends(surface.segments().all) }) };

@@ -74,7 +74,8 @@ TEST_P(AlgebraicT2D, AgreesWithAnIndependentProgram)
   const certify::Estimate eta =
       certify::Estimator<2>(c.form, certify::ContactRule::reference, of_4x2)(u, stress);
   EXPECT_LE(eta.global.alg, expected["eta_alg"].get<double>() * (1 + 1e-8));  // the tree may give less
-  expect_digits(of_4x2.value * certify::field_norm<2>(c.problem, c.mesh, rho), expected["eta_alg"], "C_F ||rho||");
+  expect_digits(of_4x2.value * certify::field_norm<2>(c.problem, c.mesh, rho), expected["eta_alg"],
+                "C_F ||rho||");
   expect_digits(eta.global.str, expected["eta_str"], "str");
   expect_digits(eta.total - eta.global.alg, expected["eta_tot"], "eta_tot");
   EXPECT_LE(certify::check_identities<2>(c.form, t, stress, rho).largest(), 1e-13);

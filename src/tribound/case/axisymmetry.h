@@ -11,7 +11,8 @@ namespace tribound::case_file
 
 [[nodiscard]] Key model_key();
 
-/// Reads `model`. Throws InputError for whatever in the case has no meaning on a meridian, or is not there yet.
+/// Reads `model`. Throws InputError for whatever in the case has no meaning on a meridian, or is not there
+/// yet.
 void read_model(const TableReader& root, Config& config);
 
 }  // namespace tribound::case_file

@@ -138,23 +138,22 @@ TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::L
                               std::span<const double> u)
 {
   const auto nodes = std::make_shared<const AtNodes<dim>>(space, u);
-  TensorField<dim> field{"stress", [&problem, &space, nodes](Index cell, std::span<Tensor<dim>> values)
-                         {
-                           const int region = space.mesh().region(cell);
-                           const problem::Material& material = problem.material(region);
-                           const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
-                           for (int i = 0; i < nodes->size(); ++i)
-                           {
-                             const Tensor<dim> gradient = nodes->gradient(cell, i, map);
-                             values[i] = problem.is_axisymmetric()
-                                             ? contact::sigma<dim>(material, gradient,
-                                                                   nodes->hoop(cell, i, gradient))
-                                             : contact::sigma<dim>(material, gradient);
-                             if (problem.regions()[region].has_initial_stress())
-                               values[i] += problem.initial_stress(
-                                   region, inside(map, space.basis().node_points()[i]));
-                           }
-                         }};
+  TensorField<dim> field{
+      "stress", [&problem, &space, nodes](Index cell, std::span<Tensor<dim>> values)
+      {
+        const int region = space.mesh().region(cell);
+        const problem::Material& material = problem.material(region);
+        const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
+        for (int i = 0; i < nodes->size(); ++i)
+        {
+          const Tensor<dim> gradient = nodes->gradient(cell, i, map);
+          values[i] = problem.is_axisymmetric()
+                          ? contact::sigma<dim>(material, gradient, nodes->hoop(cell, i, gradient))
+                          : contact::sigma<dim>(material, gradient);
+          if (problem.regions()[region].has_initial_stress())
+            values[i] += problem.initial_stress(region, inside(map, space.basis().node_points()[i]));
+        }
+      }};
   if (problem.is_axisymmetric())
     field.hoop = [&problem, &space, nodes](Index cell, std::span<double> values)
     {

@@ -49,13 +49,14 @@ template <int dim>
 [[nodiscard]] TensorField<dim> stress_field(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space, std::span<const double> u);
 
-/// sigma_h = sigma_dis + sigma_lin as a field, on a meridian r times the stress. Keeps references to the arguments.
+/// sigma_h = sigma_dis + sigma_lin as a field, on a meridian r times the stress. Keeps references to the
+/// arguments.
 template <int dim>
 [[nodiscard]] TensorField<dim> equilibrated_stress_field(const fem::LagrangeSpace<dim>& space,
                                                          const certify::Stress<dim>& stress);
 
-/// sigma_zz / (sigma_xx + sigma_yy) in 2D, zz being the direction around the axis on a meridian: nu = lambda / (2 (lambda + mu)) in plane strain, 0 in plane
-/// stress.
+/// sigma_zz / (sigma_xx + sigma_yy) in 2D, zz being the direction around the axis on a meridian: nu = lambda
+/// / (2 (lambda + mu)) in plane strain, 0 in plane stress.
 [[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
 
 /// What the initial stress adds to sigma_zz in 2D, sigma_0,zz - ratio (sigma_0,xx + sigma_0,yy); 0 in 3D.

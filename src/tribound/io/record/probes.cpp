@@ -178,13 +178,13 @@ std::pair<Tensor<dim>, double> stress_at(const contact::NitscheForm<dim>& form, 
       const mesh::CellMap<2> map = mesh::cell_map(space.mesh(), cell);
       const problem::Material& material = form.problem().material(space.mesh().region(cell));
       const fem::Tabulation<2> table = space.basis().tabulate(at);
-      const Tensor<2> gradient = fem::gradient_at<2>(space.cell_nodes(cell), u, table.gradients_at(0),
-                                                     map.inverse_transpose);
+      const Tensor<2> gradient =
+          fem::gradient_at<2>(space.cell_nodes(cell), u, table.gradients_at(0), map.inverse_transpose);
       const double u_r = fem::value_at<2>(space.cell_nodes(cell), u, table.values_at(0))[0];
       const double hoop = contact::hoop_strain(map(xhat)[0], u_r, gradient(0, 0));
       const Tensor<2> sigma = contact::sigma<2>(material, gradient, hoop);
-      return {sigma, contact::hoop_stress(material, gradient, hoop) -
-                         out_of_plane_ratio(material) * sigma.trace()};
+      return {sigma,
+              contact::hoop_stress(material, gradient, hoop) - out_of_plane_ratio(material) * sigma.trace()};
     }
   return {values_at<dim>(field, space.basis(), cell, at)[0], 0.0};
 }
