@@ -57,6 +57,11 @@ GivenNumber parse_number(const std::string& text, std::size_t n_steps)
 /// The steps to be judged: those that belong to the load steps of the case, or the one that is chosen.
 std::vector<TheirStep> chosen_steps(const JudgeRequest& request, const case_file::Config& config)
 {
+  if (config.is_axisymmetric)
+    throw InputError(
+        {.file = config.file, .key = "model"},
+        "bodies of revolution cannot be judged: there is no bound in the energy norm for them yet",
+        "a model in 3D of a sector");
   if (!request.steps)
   {
     if (request.solutions.size() > 1)
@@ -86,11 +91,6 @@ mesh::ImportedSolution solution_of(const JudgeRequest& request, TheirStep& their
 /// Meshes follow the energy error, and only sharpness and limits end the run.
 void prepare_to_judge(case_file::Config& config)
 {
-  if (config.is_axisymmetric)
-    throw InputError(
-        {.file = config.file, .key = "model"},
-        "bodies of revolution cannot be judged: there is no bound in the energy norm for them yet",
-        "a model in 3D of a sector");
   config.output.directory /= "judge";
   config.adapt.bars.levels = adapt::EnergyLevels::every;
   if (config.history) return;  // which refines for all of its steps, to adapt.tolerance
