@@ -143,7 +143,7 @@ ProblemData<2> random_problem(std::mt19937& random, double inner)
                                  formula(fmt::format("{:.6f}*x^2", 0.05 * std::abs(number(random)))))},
       .material = lame(1, 0.15 + 0.3 * std::abs(number(random)))};
   data.boundaries.push_back(
-      random() % 2 == 0 ? loaded<2>("top", linear(0.05), -0.1)
+      random() % 2 == 0 ? loaded<2>("top", linear(0.05), -0.4)
                         : fixed<2>("top", random() % 2 == 0 ? std::optional<problem::Field>(0.0) : free,
                                    formula("-0.03 - 0.01*x")));
   data.boundaries.push_back(loaded<2>("right", linear(0.05), linear(0.03)));
