@@ -12,6 +12,7 @@ from base64 import b64decode, b64encode
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -58,13 +59,20 @@ def write() -> None:
     nbformat.write(notebook, FILE)
 
 
+def is_stream(output: Any) -> bool:
+    return bool(output.output_type == "stream")
+
+
 def said(cell: Any) -> list[str]:
-    """The texts of a cell's outputs; of a picture only that it is one."""
+    """The texts of a cell's outputs; of a picture only that it is one. What is printed comes in pieces as it is made."""
     texts = []
-    for output in cell.get("outputs", ()):
-        data = output.get("data", {"text/plain": output.get("text", "")})
-        kind = next(kind for kind in ("image/png", "text/html", "text/plain") if kind in data)
-        texts.append(kind if kind == "image/png" else VARIES.sub("", data[kind]))
+    for is_printed, outputs in groupby(cell.get("outputs", ()), is_stream):
+        if is_printed:
+            texts.append(VARIES.sub("", "".join(output.text for output in outputs)))
+            continue
+        for output in outputs:
+            kind = next(kind for kind in ("image/png", "text/html", "text/plain") if kind in output.data)
+            texts.append(kind if kind == "image/png" else VARIES.sub("", output.data[kind]))
     return texts
 
 
