@@ -69,7 +69,7 @@ std::vector<BadCase> syntax()
       {"TableTwice", head + "[newton]\n[newton]\n", "case.toml:4:", "newton: is given twice", "keep one"},
       {"KeyTwice", head + "degree = 1\ndegree = 2\n", "case.toml:4:", "degree: is given twice", "keep one"},
       {"UnknownTopKey", "degre = 2\n" + head, "case.toml:1:1: degre: ", "unknown key",
-       "did you mean \"degree\"? allowed here: title, degree, units, parameters, mesh"},
+       "did you mean \"degree\"? allowed here: title, degree, model, units, parameters, mesh"},
       {"UnknownTable", head + "[plasticity]\n", "case.toml:3:2: plasticity: ", "unknown key",
        "allowed here: "},
       {"UnknownNestedKey", head + "[adapt]\ntolerence = 1\n",

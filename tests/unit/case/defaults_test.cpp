@@ -153,6 +153,7 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
       {"study.figures", [=](const case_file::Config& c, const Row&) { return truth(c.study.figures); }},
       {"judge.sharpness",
        [](const case_file::Config& c, const Row&) { return fmt::format("{}", c.judge.sharpness); }},
+      {"model", [](const case_file::Config& c, const Row&) { return c.is_axisymmetric ? "given" : "none"; }},
       {"not_covered",
        [](const case_file::Config& c, const Row&) { return c.not_covered.empty() ? "none" : "given"; }},
       {"output.directory",
