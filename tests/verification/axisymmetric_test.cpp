@@ -173,9 +173,9 @@ TEST(Axisymmetric, BoundIsNotBelowTheDualNorm)
       const certify::Estimate eta =
           certify::estimate<2>(c.form, newton.u, certify::equilibrate<2>(c.form, newton.u, newton.traction));
       EXPECT_GE(eta.total_sharp, below) << line;
-      if (steps == all_steps)  // mostly 1.05 to 1.15; more where cnt is as large as str
+      if (steps == all_steps)  // beside it cnt and frc can be as large, where contact ends inside a facet
       {
-        EXPECT_LE(eta.total_sharp, 1.6 * below) << line;
+        EXPECT_LE(eta.global.str, 1.2 * below) << line;
       }
       line += fmt::format("  k = {:<2} {:.4f}", newton.steps.size(), eta.total_sharp / below);
     }

@@ -28,7 +28,7 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
                                       const problem::Units& units)
 {
   std::vector<RegionFacts> regions;
-  const int dimension = problem.is_axisymmetric() ? 3 : dim;
+  const int dimension = dim + (problem.is_axisymmetric() ? 1 : 0);
   for (std::size_t r = 0; r < mesh.region_names().size(); ++r)
     regions.push_back(
         {mesh.region_names()[r], 0, 0.0, describe(problem.material(static_cast<int>(r)), dimension, units)});
