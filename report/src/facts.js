@@ -2,9 +2,10 @@
 
 import { unpackText } from "./arrays.js";
 import { axisNames, showsMeridian } from "./axes.js";
-import { count, element, number, seconds, section, table, withoutNoise } from "./dom.js";
+import { count, element, number, percent, plural, seconds, section, table, withoutNoise } from "./dom.js";
 import { download } from "./export.js";
 import { guaranteeFormula, typeset } from "./math.js";
+import { hashOfRecord } from "./paper.js";
 import { headed, measured, unit } from "./units.js";
 
 const list = (items) => element("ul", {}, items.map((item) => element("li", {}, typeset(item))));
@@ -17,12 +18,29 @@ export function definitions(pairs) {
     element("div", {}, element("dt", {}, name), element("dd", {}, value))));
 }
 
+/** What the numbers on the page are worth, without formulas. */
+function plainWords(run) {
+  const { relative, energy_error: energy, quantities = [], steps } = run;
+  const bars = quantities.filter(({ reason }) => !reason);
+  const guaranteed = run.bound === null || run.bound === undefined ? [] : [
+    relative > 0 && !steps ? `The computed displacement leaves forces that do not balance, in the body, at its boundary and in contact. They are at most ${percent(relative)} of the stress, measured as below.` : null,
+    steps ? "In each load step the computed displacement leaves forces that do not balance. Their largest size, measured as below, stands in the table of steps." : null,
+    energy?.relative > 0 ? `The computed displacement is at most ${percent(energy.relative)} away from the exact one of this model${energy.guaranteed_for === "tresca_with_computed_threshold" ? " with the computed friction threshold" : ""}, in the energy norm.` : null,
+    bars.length > 0 ? `${bars.length === 1 ? "One number has" : `${bars.length} numbers have`} an interval in which the exact value is certain to lie: ${bars.map(({ name }) => name).join(", ")}.` : null].filter(Boolean);
+  const open = ["Single values: the largest stress, the largest pressure, values at points and along lines, and all pictures are those of the computed solution.",
+    run.balance ? "Forces, moments and factors of safety are in equilibrium with the loads, but the bound does not cover them." : null,
+    "Whether model, loads, supports and materials describe the structure is for the engineer to judge."].filter(Boolean);
+  return [element("h3", {}, "In plain words"),
+    guaranteed.length > 0 ? [element("p", {}, "Guaranteed, without unknown constants and on every mesh:"), list(guaranteed)] : element("p", {}, "Nothing is guaranteed of this result."),
+    element("p", {}, "Not guaranteed:"), list(open)];
+}
+
 export function guaranteeSection(run) {
   const identities = run.identities && Object.entries(run.identities)
     .filter(([, value]) => value !== null) // no symmetry row by row, nor for degree 1
     .map(([name, value]) => [name, number(value, 2)]);
   return section("guarantee", "Guarantee", "What is guaranteed, and what is not", null,
-    element("div", { class: "two-columns" },
+    plainWords(run), element("div", { class: "two-columns" },
       element("div", {}, element("h3", {}, run.bound ? "The bound covers" : "A bound would cover"), guaranteeFormula(showsMeridian()), list(run.covered),
         element("h3", {}, "It does not cover"), list(run.not_covered),
         element("h3", {}, "The law"), element("p", {}, typeset(run.law))),
@@ -34,16 +52,37 @@ export function guaranteeSection(run) {
 }
 
 /** The case as it was solved, with what was overridden. */
-function caseText(effective) {
+export function caseTextSection({ case: effective }) {
   if (!effective?.text) return null;
   const { text, overrides, sha256 } = effective;
-  return element("details", {}, element("summary", {}, "The effective case, with its formulas and body forces"),
+  return section("text", "Case file", "The case file", "As it was solved, with every --set; run again, it gives the same numbers.",
     overrides?.length > 0 ? element("p", { class: "note" }, "Set on the command line: ", overrides.map((item, i) => [i > 0 ? ", " : "", element("code", {}, item)]), ".") : null,
-    element("pre", { tabindex: 0 }, text), sha256 ? element("p", { class: "note" }, `SHA-256 ${sha256}`) : null);
+    element("details", {}, element("summary", {}, "The effective case, with its formulas and body forces"), element("pre", { tabindex: 0 }, text)),
+    sha256 ? element("p", { class: "note" }, "SHA-256 ", element("code", {}, sha256)) : null);
+}
+
+/** The tables of the case with these names, as it has them. */
+function tablesOf(effective, names) {
+  const tables = (effective?.text ?? "").split(/^(?=\[)/m);
+  return tables.filter((text) => names.some((name) => new RegExp(`^\\[+${name}[.\\]]`).test(text))).join("").trim();
+}
+
+const kinds = { 2: "plane bodies, forces per unit of depth", 3: "bodies in space" };
+
+/** The equations, and how they were solved. */
+function modelDefinitions(run) {
+  const { d, p, gamma0, friction, levels, steps } = run;
+  return definitions([
+    ["Bodies", showsMeridian() ? "bodies of revolution, computed in their meridian" : kinds[d]],
+    ["Model", "equilibrium of linearly elastic bodies, small strains"],
+    ["Contact", friction ? `law of friction or of the interface: ${friction}` : "none"],
+    ["Load steps", steps && `${plural(steps.length, "step", "steps")}, from t = ${number(steps[0]?.t, 6)} to ${number(steps.at(-1)?.t, 6)}`],
+    ["Method", `Nitsche\u2019s finite element method of degree ${p}, \u03b3\u2080 = ${number(gamma0)}, ${plural(levels.length, "mesh", "meshes")}`],
+    ["Units", unitsText(run)]]);
 }
 
 /** Loads, reactions, springs and contact forces with their sum, which is zero in equilibrium. */
-function balanceTable(balance, d) {
+export function balanceSection({ balance, d }) {
   if (!balance?.rows?.length) return null;
   const [forces, moments] = [unit("force"), unit("moment")];
   const scale = (key) => balance.rows.flatMap((row) => row[key]).reduce((size, value) => Math.max(size, Math.abs(value)), 0);
@@ -58,12 +97,12 @@ function balanceTable(balance, d) {
     return cellsOfRow;
   });
   if (isMeridian)
-    return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, "Axial forces of the full circle on the body; in equilibrium the sum is zero."),
-      table(["", "where", "by", headed(`#force ${axes[1]}`, forces)], rows, { class: "balance" })];
+    return section("balance", "Balance", "Balance of forces", "Axial forces of the full circle on the body; in equilibrium the sum is zero.",
+      table(["", "where", "by", headed(`#force ${axes[1]}`, forces)], rows, { class: "balance" }));
   const about = balance.about ? `, moments about (${balance.about.map((x) => number(x, 4)).join(", ")})` : "";
-  return [element("h3", {}, "Balance of forces"), element("p", { class: "note" }, `Forces on the body${about}; in equilibrium the sum is zero.`),
+  return section("balance", "Balance", "Balance of forces", `Loads, reactions of supports and contact forces on the body${about}; in equilibrium the sum is zero.`,
     table(["", "where", "by", ...axes.map((axis) => headed(`#force ${axis}`, forces)),
-      ...(d === 2 ? [headed("#moment", moments)] : axes.map((axis) => headed(`#moment ${axis}`, moments)))], rows, { class: "balance" })];
+      ...(d === 2 ? [headed("#moment", moments)] : axes.map((axis) => headed(`#moment ${axis}`, moments)))], rows, { class: "balance" }));
 }
 
 /** The units of the numbers. */
@@ -76,14 +115,18 @@ function unitsText({ d, units }) {
 export function caseSection(data) {
   const run = data.certificate;
   const [body, boundary] = run.d === 2 && !showsMeridian() ? ["area", "length"] : ["volume", "area"];
-  return section("case", "Case", "The case", null, caseText(data.case),
+  const loads = tablesOf(data.case, ["load", "parameters", "history"]);
+  return section("case", "Case", "The case", null, modelDefinitions(run), element("h3", {}, "Regions and materials"),
     table(["region", "#cells", headed(`#${body}`, unit("body")), "material"],
       run.mesh.regions.map((region) => [region.name, count(region.cells), number(region.measure), region.material])),
+    element("h3", {}, "Supports, loads and contact"),
     table(["boundary", "#facets", headed(`#${boundary}`, unit("boundary")), "what holds there"],
       run.mesh.boundaries.map((part) => [part.name, count(part.facets), number(part.measure), part.condition])),
-    element("p", { class: "note" }, `Cells and facets are those of the first mesh: ${count(run.mesh.vertices)} vertices, cells from `
-      + `${measured(`${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)}`, unit("length"))}. ${unitsText(run)}`),
-    balanceTable(run.balance, run.d));
+    element("p", { class: "note" }, "Where something varies, the case file has its formula."),
+    loads ? [element("p", { class: "note" }, "Body forces, temperatures, parameters and load steps, as the case has them:"), element("pre", {}, loads)] : null,
+    element("h3", {}, "Mesh"), element("p", {}, `The first mesh has ${plural(run.mesh.cells, "cell", "cells")} and ${count(run.mesh.vertices)} vertices, its cells are from `
+      + `${measured(`${number(run.mesh.smallest_cell)} to ${number(run.mesh.largest_cell)}`, unit("length"))} long; cells and facets above are counted there.`
+      + `${run.cells === undefined ? "" : ` The last mesh has ${plural(run.cells, "cell", "cells")} and ${count(run.dofs)} unknowns.`}`));
 }
 
 function levelTable(run) {
@@ -97,14 +140,14 @@ function levelTable(run) {
 /** Wall seconds by stage, and the machine. */
 export function timesAndMachine(times, machine, program) {
   const memory = machine.memory > 0 ? `, ${Math.round(machine.memory / 2 ** 30)} GiB of memory` : "";
-  const stages = Object.entries(times).map(([stage, value]) => [stage, seconds(value)]);
+  const stages = Object.entries(times).map(([stage, value]) => [stage, stage === "factorisations" ? count(value) : seconds(value)]);
   return element("div", { class: "two-columns" },
     stages.length > 0 ? element("div", {}, element("h3", {}, "Times"), definitions(stages)) : null,
     element("div", {}, element("h3", {}, "Machine and program"), definitions([
       ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
       ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
       ["MUMPS", program.mumps], ["BLAS", program.blas && `${program.blas}${program.blas_threads ? `, threads: ${program.blas_threads}` : ""}`],
-      ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen]])));
+      ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen], ["JSON, SHA-256", hashOfRecord && element("code", {}, hashOfRecord)]])));
 }
 
 export function levelsSection({ certificate: run, machine }) {

@@ -13,6 +13,7 @@ import { noteText, usualFactor, valueText } from "./field_words.js";
 import { FieldControls } from "./field_controls.js";
 import { obstacleCorners } from "./obstacle.js";
 import { overlay } from "./overlay.js";
+import { isForPaper } from "./paper.js";
 import { frameAspect, homeScale, Picture, placeText } from "./picture.js";
 import { valueAt } from "./pick.js";
 import { shownAs, ways } from "./revolution.js";
@@ -23,6 +24,7 @@ import { stagesOf } from "./stages.js";
 
 const paperWidth = 530; // CSS pixels of the picture on paper, next to its legend
 const manySegments = 30000; // beyond this, the mesh is drawn only on request
+const onPaper = ["u", "von_mises", "s1", "s3", "eta-tot"]; // a picture each
 
 /** `way`: one of those in revolution.js to show the body; `show(way)`: changes it. */
 class FieldView {
@@ -220,6 +222,20 @@ class FieldView {
     return this.camera.scale === this.homeView.scale && this.camera.target === this.homeView.target;
   }
 
+  /** A figure for each of the fields of paper; afterwards the picture is as before. */
+  async printed() {
+    const { field } = this.state;
+    const figures = [];
+    for (const { id, group, label } of onPaper.flatMap((name) => this.fields.find((other) => other.id === name) ?? [])) {
+      await this.set({ field: id });
+      this.picture.keep();
+      figures.push(element("figure", { class: "print-only" }, element("div", { class: "view-row" }, this.picture.print.cloneNode(true), this.legend.cloneNode(true)),
+        element("figcaption", {}, `${group}: ${label}, ${this.stages.name} ${this.stages.text(this.current.level)}. ${this.note.textContent}`)));
+    }
+    await this.set({ field });
+    return figures;
+  }
+
   /** What the pointer is told of a point. */
   describe(hit) {
     const { current: surface, field } = this;
@@ -238,5 +254,11 @@ export function fieldsSection(data, components) {
     place.replaceChildren(views.get(way).element);
     await views.get(way).start(level === undefined ? {} : { level, field, range, factor, mesh });
   };
-  return { element: section("fields", "Fields", "Mesh and fields", null, place), start: () => show("meridian") };
+  const start = async () => {
+    await show("meridian");
+    if (!isForPaper) return;
+    place.after(...await views.get("meridian").printed());
+    place.classList.add("screen-only");
+  };
+  return { element: section("fields", "Fields", "Mesh and fields", null, place), start };
 }

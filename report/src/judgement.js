@@ -64,5 +64,6 @@ export function judgementPage({ judgement, of_steps: ofSteps, program, machine, 
   const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
   const sections = [stepsSection(ofSteps), fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
-  return { title: `${judgement.title || judgement.file}, judged`, header: judgementHeader({ judgement, ofSteps, program, machine }), sections, start: fields.start, machine, program };
+  return { title: `${judgement.title || judgement.file}, judged`, purpose: "This report documents how wrong the solution of another program is, with a guarantee.",
+    header: judgementHeader({ judgement, ofSteps, program, machine }), sections, start: fields.start, machine, program };
 }

@@ -3,6 +3,7 @@
 import "./style.css";
 import { element } from "./dom.js";
 import { judgementPage } from "./judgement.js";
+import { contents, prepareForPaper } from "./paper.js";
 import { runPage } from "./run.js";
 import { studyPage } from "./study.js";
 import { sweepPage } from "./sweep.js";
@@ -18,12 +19,6 @@ function navigation(sections) {
     element("a", { href: `#${part.id}` }, part.dataset.short)));
 }
 
-/** Opens everything for printing. */
-function openOnPaper(page) {
-  addEventListener("beforeprint", () => page.querySelectorAll("details").forEach((part) => { part.dataset.open = part.open; part.open = true; }));
-  addEventListener("afterprint", () => page.querySelectorAll("details").forEach((part) => { part.open = part.dataset.open === "true"; }));
-}
-
 async function show() {
   const place = document.getElementById("page");
   const kinds = { run: (data) => runPage(data, embedded("true-errors")), study: studyPage, sweep: sweepPage, judgement: judgementPage };
@@ -33,12 +28,13 @@ async function show() {
     return;
   }
   const page = kinds[kind](embedded(`${kind}-data`));
-  const { machine, program } = page;
-  document.title = `${page.title} \u2013 Tribound`;
-  place.replaceChildren(page.header, navigation(page.sections), ...page.sections,
-    element("footer", {}, `Written by Tribound ${program.version} on ${machine.written}. This file needs no network; its data are also in the files beside it.`));
-  openOnPaper(place);
+  const { title, sections, onPaper = sections, machine, program } = page;
+  const written = `Tribound ${program.version} on ${machine.written}`;
+  place.replaceChildren(page.header, contents(page.purpose, onPaper), navigation(sections), ...sections,
+    element("footer", { class: "screen-only" }, `Written by ${written}. This file needs no network; its data are also in the files beside it.`));
+  prepareForPaper(place, { sections, onPaper, foot: `${title} \u2013 ${written}` });
   await page.start();
+  document.title = `${title} \u2013 Tribound`; // not before: the program knows by it that a printed page is complete
   document.documentElement.dataset.ready = "true"; // for tests
 }
 

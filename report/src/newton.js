@@ -1,7 +1,9 @@
 // Newton's method, step by step.
 
-import { number, percent, seconds, section, table, withoutNoise } from "./dom.js";
+import { count, element, number, percent, seconds, section, table, withoutNoise } from "./dom.js";
 import { stagesOf } from "./stages.js";
+
+const mostPrinted = 80; // steps on paper
 
 /**
  * The sum of the components in a row, or null if one is unknown: a step in 3D whose linearisation part alone is too large has no
@@ -34,7 +36,9 @@ export function newtonSection(run, rows, components) {
     "#linear iterations", "#time", ""], steps, { class: "newton long" });
   body.classList.add("table-tall");
   body.tabIndex = 0;
+  const isLong = steps.length > mostPrinted;
+  if (isLong) body.classList.add("screen-only");
   return section("newton", "Newton", "Newton\u2019s method",
     run.bound === null ? null : "The bound holds for every iterate. Iterating ends where the linearisation part is a small fraction of the rest: further steps would not make the solution better on this mesh.",
-    body);
+    body, isLong ? element("p", { class: "print-only" }, `newton.csv has the ${count(steps.length)} steps.`) : null);
 }

@@ -5,12 +5,13 @@ import { boundSection } from "./bound.js";
 import { coloured } from "./components.js";
 import { contactSection } from "./contact.js";
 import { convergenceSection } from "./convergence.js";
-import { caseSection, filesSection, guaranteeSection, levelsSection } from "./facts.js";
+import { balanceSection, caseSection, caseTextSection, filesSection, guaranteeSection, levelsSection } from "./facts.js";
 import { fieldsSection } from "./fields.js";
 import { historySection } from "./history.js";
 import { newtonSection } from "./newton.js";
 import { observationsSection } from "./observations.js";
 import { quantitiesSection } from "./quantities.js";
+import { safetySection } from "./safety.js";
 import { nameUnits } from "./units.js";
 import { header } from "./verdict.js";
 
@@ -25,15 +26,23 @@ export function runPage(data, trueErrors) {
   const fields = fieldsSection(data, components);
   const contact = contactSection(data);
   const { element: top, showContact } = header(data);
-  const sections = [fields.element, historySection(run), quantitiesSection(run), observationsSection(run), boundSection(run, components), convergenceSection(run, components), contact.element,
-    newtonSection(run, data.newton, components),
-    guaranteeSection(run), caseSection(data), levelsSection(data),
-    filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data)].filter(Boolean);
+  const results = [historySection(run), quantitiesSection(run), observationsSection(run)];
+  const bounds = [boundSection(run, components), convergenceSection(run, components)];
+  const forces = [contact.element, safetySection(run), balanceSection(run)];
+  const newton = newtonSection(run, data.newton, components);
+  const guarantee = guaranteeSection(run);
+  const [about, text] = [caseSection(data), caseTextSection(data)];
+  const levels = levelsSection(data);
+  const files = filesSection(trueErrors ? [...data.files, "../report.html"] : data.files, data);
+  const sections = [fields.element, ...results, ...bounds, ...forces, newton, guarantee, about, text, levels, files].filter(Boolean);
+  const onPaper = [about, fields.element, ...results, ...forces, guarantee, ...bounds, newton, levels, text].filter(Boolean);
   const start = async () => {
     const summary = await contact.summary();
     if (summary) showContact(summary);
     await fields.start();
     await contact.start();
   };
-  return { title: run.title || run.file, header: top, sections, start, machine, program: run.program };
+  const title = run.title || run.file;
+  const purpose = `This report documents the computation \u201c${title}\u201d: the model with its data, the results, and how far they are guaranteed.`;
+  return { title, purpose, header: top, sections, onPaper, start, machine, program: run.program };
 }

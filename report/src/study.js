@@ -71,6 +71,7 @@ export function studyPage({ study, components, machine, files }) {
   const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components.filter(({ part }) => part !== "combined"))), variantsSection(study, files),
     newtonSection(study), referenceSection(study),
     section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program)), filesSection(files)].filter(Boolean);
-  return { title: `${study.title || study.file}, study`, header: studyHeader(study, machine), sections, start: async () => {}, machine,
+  return { title: `${study.title || study.file}, study`, purpose: "This report documents a study: what the adaptation of the mesh and the stopping of Newton\u2019s method bring.",
+    header: studyHeader(study, machine), sections, start: async () => {}, machine,
     program: study.program };
 }

@@ -171,5 +171,6 @@ export function sweepPage({ sweep, machine, files }) {
     chartSection("effort", "Bounds", "Bounds and effort", null, of("effort"), lines, axis),
     runsSection(sweep, drawn, files),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, sweep.program)), filesSection(files.filter((name) => !name.includes("/")))].filter(Boolean);
-  return { title: `${sweep.title || sweep.file}, sweep`, header: sweepHeader(sweep, machine), sections, start: async () => {}, machine, program: sweep.program };
+  return { title: `${sweep.title || sweep.file}, sweep`, purpose: `This report documents ${plural(sweep.runs.length, "run", "runs")} of a case with other values of ${sweep.titles.join(", ")}.`,
+    header: sweepHeader(sweep, machine), sections, start: async () => {}, machine, program: sweep.program };
 }

@@ -333,8 +333,8 @@ async function checkGivenCertificate(browser, directory) {
   const given = await openPage(browser, pathToFileURL(changed).href);
   assert.match(await given.page.locator(".warnings").innerText(), /1 warning.*boundary "bottom": of .*raise/s);
   assert.equal(await given.page.locator(".warnings math").count(), 2);
-  const shown = await given.page.locator("#case").textContent();
-  for (const words of ["degree=3", "body = [0, \"-x\"]", "SHA-256 0123", "moments about (0, 0.5)"]) assert(shown.includes(words), words);
+  for (const [place, words] of [["#text", "degree=3"], ["#text", "body = [0, \"-x\"]"], ["#text", "SHA-256 0123"], ["#case", "body = [0, \"-x\"]"],
+    ["#balance", "moments about (0, 0.5)"]]) assert((await given.page.locator(place).textContent()).includes(words), words);
   const rows = await given.page.locator(".balance tbody tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
   assert.deepEqual(rows, [["load", "top", "traction", "0", "\u22120.2", "\u22120.2"], ["reaction", "left", "displacement", "0", "0.2", "0.2"],
     ["sum", "", "", "0", "0", "0"]]);

@@ -30,8 +30,9 @@ export async function useRevolution(browser, directory, picture) {
   const { page, complaints, seconds } = await openPage(browser, pathToFileURL(`${directory}/report.html`).href);
   assert.doesNotMatch(await page.locator("body").innerText(), /Infinity|NaN|undefined/);
   assert.match(await page.locator(".subtitle").textContent(), /axisymmetric, degree 2/);
-  assert.match(await page.locator("#case").textContent(), /volume \[mm\u00b3\].*forces in N, of the full circle.*force z \[N\]/s);
-  assert.doesNotMatch(await page.locator("#case").textContent(), /plane strain|moment/);
+  assert.match(await page.locator("#case").textContent(), /forces in N, of the full circle.*volume \[mm\u00b3\]/s);
+  assert.match(await page.locator("#balance").textContent(), /force z \[N\]/);
+  assert.doesNotMatch(await page.locator("#page").textContent(), /plane strain|moment \[/);
   assert.match(await page.locator("#contact").textContent(), /force z on the body \[N\]bottom\u221231\.4159.*31\.4159/);
   assert.match(await page.locator("#guarantee math[display=block]").textContent(), /vr\/r/);
   const fields = await page.locator("#field option").allTextContents();
