@@ -1,21 +1,18 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <thread>
 #include <variant>
 
+#include "app/child_process.h"
 #include "app/command/commands.h"
 #include "app/console/text.h"
 #include "app/page/report_page.h"
@@ -30,8 +27,6 @@
 #include "tribound/io/file/output_directory.h"
 #include "tribound/mesh/import/inp.h"
 
-extern char** environ;
-
 namespace tribound::app
 {
 
@@ -45,31 +40,13 @@ void limit_threads(int n_threads)
     ::setenv(name, fmt::format("{}", n_threads).c_str(), 0);
 }
 
-/// Starts this program with stdout and stderr in a file, in its own process group: Ctrl-C reaches only the
-/// sweep, which ends its runs cleanly.
+/// Starts this program, in its own process group: Ctrl-C reaches only the sweep, which ends its runs cleanly.
 pid_t start(std::vector<std::string> arguments, const std::filesystem::path& log)
 {
-  std::vector<char*> words;
-  words.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) words.push_back(argument.data());
-  words.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  ::posix_spawn_file_actions_init(&files);
-  ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  ::posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  ::posix_spawnattr_init(&attributes);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  ::posix_spawnattr_setpgroup(&attributes, 0);
-  pid_t child = 0;
-  const int error = ::posix_spawn(&child, "/proc/self/exe", &files, &attributes, words.data(), environ);
-  ::posix_spawn_file_actions_destroy(&files);
-  ::posix_spawnattr_destroy(&attributes);
-  if (error != 0)
-    throw InputError({.file = log.string()}, fmt::format("cannot start a run: {}", std::strerror(error)),
-                     "fewer --jobs");
-  return child;
+  const Child child = start_program("/proc/self/exe", std::move(arguments), {.log = log, .own_group = true});
+  if (!child.problem.empty())
+    throw InputError({.file = log.string()}, "the run " + child.problem, "fewer --jobs");
+  return child.process;
 }
 
 case_file::SweepTable table_of(const SweepRequest& request)
