@@ -37,6 +37,7 @@ struct Arguments : SweepRequest
   std::vector<std::string> accepted;  ///< of import
   std::string restart;                ///< of run: an output directory, or a checkpoint there
   MeshRequest mesh;
+  ReportRequest report;
 };
 
 void add_set_option(CLI::App& command, Arguments& arguments)
@@ -66,6 +67,7 @@ constexpr const char* help_footer = R"(Examples:
   tribound run block.toml --set degree=3 --set boundary.bottom.contact.coefficient=0.5
   tribound sweep block.toml 'degree=[1,2]' boundary.bottom.contact.coefficient=0.1:0.8:8 --jobs 2
   tribound judge block.toml --solution theirs.vtu --accept 0.05
+  tribound report out/block --pdf             print the result: out/block/report.pdf
   tribound COMMAND --help                     the options of a command
 
 Exit codes:
@@ -153,6 +155,13 @@ void describe_mesh(CLI::App& command, MeshRequest& request)
   command.add_flag("-q,--quiet", request.quiet, "Print neither what is in the mesh nor notes");
 }
 
+void describe_report(CLI::App& command, ReportRequest& request)
+{
+  command.group(case_commands);
+  command.add_option("directory", request.directory, "A directory of results")->required();
+  command.add_flag("--pdf", request.pdf, "Print the page to report.pdf beside it, by Chromium");
+}
+
 /// Commands and options as shown by --help.
 void describe_command_line(CLI::App& app, Arguments& arguments)
 {
@@ -186,6 +195,7 @@ void describe_command_line(CLI::App& app, Arguments& arguments)
   describe_sweep(*sweep, arguments);
   describe_judge(*app.add_subcommand("judge", "Bound the error of another program's solution of the case"),
                  arguments);
+  describe_report(*app.add_subcommand("report", "Print the report of a result, for paper"), arguments.report);
   init->add_option("name", arguments.start,
                    fmt::format("The case to start from: {}", fmt::join(template_names(), ", ")))
       ->capture_default_str();
@@ -245,6 +255,7 @@ ExitCode dispatch(const CLI::App& app, const Arguments& arguments)
   if (command == "sweep") return sweep(arguments);
   if (command == "check") check(arguments, arguments.json);
   if (command == "mesh") write_mesh(arguments.mesh);
+  if (command == "report") print_report(arguments.report);
   if (command == "import")
     import_deck({arguments.deck, arguments.directory, arguments.accepted, arguments.quiet});
   if (command == "init") init(arguments.start, arguments.directory);

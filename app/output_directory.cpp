@@ -48,10 +48,10 @@ std::unique_ptr<io::OutputDirectory> take_directory(const case_file::Config& con
   const std::filesystem::path& path = config.output.directory;
   auto directory = std::make_unique<io::OutputDirectory>(path);
   if (keeps_results) return directory;
-  io::remove_results(
-      path, {"certificate.json", "report.html", "convergence.csv", "quantities.csv", "probes.csv",
-             "sections.csv", "history.csv", "newton.csv", "contact.csv", "adapted.msh", "judgement.json",
-             "judgement.html", "judged_cells.csv", "judged.vtu", io::checkpoint_name, io::step_log_name});
+  io::remove_results(path, {"certificate.json", "report.html", "report.pdf", "judgement.pdf",
+                            "convergence.csv", "quantities.csv", "probes.csv", "sections.csv", "history.csv",
+                            "newton.csv", "contact.csv", "adapted.msh", "judgement.json", "judgement.html",
+                            "judged_cells.csv", "judged.vtu", io::checkpoint_name, io::step_log_name});
   for (const char* unfinished : {io::unfinished_pass, io::unfinished_steps})
     io::remove_series_directory(path / unfinished);
   io::remove_series(path);

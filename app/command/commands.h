@@ -132,6 +132,18 @@ struct JudgeRequest : CaseRequest
 /// it is larger; of several load steps that of the worst. Throws InputError for a solution on another mesh.
 [[nodiscard]] ExitCode judge(const JudgeRequest& request);
 
+/// `tribound report`: prints report.html in a directory of results, and judgement.html where it is there.
+/// With `pdf`, Chromium prints them to report.pdf and judgement.pdf beside them; else the text says how a
+/// reader does. Throws InputError where there is no page with its result, or no Chromium, and WriteError
+/// where nothing is printed.
+struct ReportRequest
+{
+  std::string directory;
+  bool pdf = false;
+};
+
+void print_report(const ReportRequest& request);
+
 /// `tribound mesh`: the mesh of a file, with the options of [mesh], for Gmsh and for other cases.
 struct MeshRequest
 {

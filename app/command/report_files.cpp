@@ -26,7 +26,7 @@ constexpr double least_share = 20;
 /// Removes files that show only the last level.
 void remove_last_shown(const std::filesystem::path& directory)
 {
-  io::remove_results(directory, {"contact.csv", "adapted.msh", "report.html"});
+  io::remove_results(directory, {"contact.csv", "adapted.msh", "report.html", "report.pdf"});
 }
 
 /// Returns the exception of writing, to be rethrown on all ranks once the level is printed.

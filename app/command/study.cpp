@@ -78,7 +78,7 @@ class StudyCommand
   ExitCode run()
   {
     const io::OutputDirectory directory(config_.output.directory);
-    io::remove_results(config_.output.directory, {"study.json", "study.csv", "report.html"});
+    io::remove_results(config_.output.directory, {"study.json", "study.csv", "report.html", "report.pdf"});
     for (const char* name : variant_names)
       if (!stop_) solve_variant(name);
     if (!stop_) solve_reference();

@@ -137,6 +137,7 @@ class Sweep
   {
     using namespace std::chrono_literals;
     const io::OutputDirectory owned(directory_);
+    io::remove_results(directory_, {"report.pdf"});
     if (request_.resume)
       for (const auto& [name, code] : complete_runs(directory_, record_))
       {

@@ -3,7 +3,7 @@
 _tribound()
 {
   local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-  local commands="init import mesh info schema check run sweep judge verify study" command= word candidates=
+  local commands="init import mesh info schema check run sweep judge report verify study" command= word candidates=
 
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if [[ " $commands " == *" $word "* ]]; then
@@ -35,6 +35,7 @@ _tribound()
         import) candidates="--directory --accept --quiet --help" ;;
         mesh) candidates="--size --merge --ignore-elements --region-array --boundaries --quiet --help" ;;
         info | schema) candidates="--help" ;;
+        report) candidates="--pdf --help" ;;
         check) candidates="--set --quiet --json --help" ;;
         run) candidates="--set --quiet --restart --help" ;;
         study) candidates="--set --quiet --help" ;;
@@ -46,6 +47,9 @@ _tribound()
 
   if [[ $command =~ ^(check|run|sweep|judge|verify|study)$ && $current != -* && ! $previous =~ ^--(refinements|jobs)$ ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$current"; compgen -d -- "$current")
+    compopt -o filenames 2>/dev/null
+  elif [[ $command == report && $current != -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -d -- "$current")
     compopt -o filenames 2>/dev/null
   elif [[ $command == import && $current != -* ]]; then
     mapfile -t COMPREPLY < <(compgen -f -X '!*.inp' -- "$current"; compgen -d -- "$current")

@@ -126,6 +126,7 @@ def expected_completions(program):
         "tribound sweep --jobs ": list("1248"),
         "tribound judge --solution ": ["folder", "theirs.vtu"],
         "tribound judge --number ": [],
+        "tribound report ": ["folder"],
     }
     for command in commands(program):
         expected[f"tribound {command} --"] = [o for o in options(program, command) if o.startswith("--")]
