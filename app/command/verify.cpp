@@ -85,7 +85,7 @@ VerifiedIterate verified_iterate(const contact::NitscheForm<dim>& form,
   iterate.bound = eta.total_sharp;
   iterate.bound_plain = eta.total;
   iterate.dual_norm = dual_norm(newton.u());
-  iterate.norms = contact::stress_norms<dim>(form.problem(), form.space(), newton.u(), &form.data());
+  iterate.norms = contact::stress_norms<dim>(form, newton.u());
   iterate.identities = certify::check_identities<dim>(form, newton.traction, stress).largest();
   return iterate;
 }

@@ -50,8 +50,7 @@ class Certifier
   /// needed.
   [[nodiscard]] bool is_candidate(const solve::NewtonIterate<dim>& iterate, CertifiedStep& step)
   {
-    if (!known_ && !stress_)
-      stress_ = contact::stress_norms(form_.problem(), form_.space(), iterate.rough_u(), &form_.data()).sigma;
+    if (!known_ && !stress_) stress_ = contact::stress_norms<dim>(form_, iterate.rough_u()).sigma;
     const Stopping criterion = method_.stopping.criterion;
     if (criterion == Stopping::tolerance || method_.regularisation) return true;
     const bool may_be_accepted = linearisation_may_be_negligible(iterate, step);
@@ -95,7 +94,7 @@ class Certifier
     rho_ = estimator_.algebraic_remainder(u, level.stress);
     level.estimate = estimator_(u, level.stress, rho_);
     level.friedrichs = estimator_.friedrichs();
-    level.norms = contact::stress_norms(form_.problem(), form_.space(), u, &form_.data());
+    level.norms = contact::stress_norms<dim>(form_, u);
     step.bound = level.estimate.bound();
     step.linearisation = linearisation_part(level.estimate.global);
     if (level.norms.sigma > 0) step.relative = level.estimate.total_sharp / level.norms.sigma;

@@ -13,7 +13,8 @@ template <int dim>
 std::vector<double> forces_on(const contact::NitscheForm<dim>& form, std::span<const double> u,
                               std::span<const double> contact_load)
 {
-  std::vector<double> forces = contact::apply_stiffness<dim>(form.problem(), form.space(), u);
+  std::vector<double> forces =
+      contact::apply_stiffness<dim>(form.problem(), form.space(), u, form.meridian());
   for (std::size_t i = 0; i < u.size(); ++i) forces[i] -= contact_load[i];
   return forces;
 }

@@ -232,7 +232,7 @@ CertifiedLevel<dim> solve_and_certify(const contact::NitscheForm<dim>& form, std
   keep_solution(form, std::move(newton), level);
   if (!level.solved())
   {
-    level.norms = contact::stress_norms<dim>(form.problem(), form.space(), level.u, &form.data());
+    level.norms = contact::stress_norms<dim>(form, level.u);
     return level;
   }
   {
@@ -267,7 +267,7 @@ CertifiedLevel<dim> solve_without_bound(const contact::NitscheForm<dim>& form, s
     keep_solution(
         form, solve_persistently<dim>(form, start, method, go_on, 0, record, std::move(equilibrium)), level);
   }
-  level.norms = contact::stress_norms<dim>(form.problem(), form.space(), level.u, &form.data());
+  level.norms = contact::stress_norms<dim>(form, level.u);
   return level;
 }
 

@@ -144,7 +144,7 @@ std::unique_ptr<Equilibrium<dim>> condensed_equilibrium(const contact::NitscheFo
                                                         const ExternalForces& forces, CondensedDofs dofs)
 {
   algebra::SparseRows stiffness =
-      contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs());
+      contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs(), form.meridian());
   const std::vector<double> of_stiffness = diagonal(stiffness, form.space());
   return std::make_unique<CondensedEquilibrium<dim>>(form, std::move(stiffness), of_stiffness, forces,
                                                      std::move(dofs));

@@ -18,7 +18,9 @@ class SparseEquilibrium final : public Equilibrium<dim>
   SparseEquilibrium(const contact::NitscheForm<dim>& form, ExternalForces forces,
                     const algebra::SolverOptions& options)
       : form_(&form),
-        stiffness_(dim, contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs()),
+        stiffness_(dim,
+                   contact::stiffness(form.problem(), form.space(), form.constraints(), &form.springs(),
+                                      form.meridian()),
                    form.space().numbers()),
         contact_(form.space().n_dofs(), dim, form.contact_pattern(), form.space().numbers()),
         tangent_(algebra::SparseMatrix::sum(stiffness_, contact_)),

@@ -5,6 +5,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/certify/truth/cell_products.h"
 #include "tribound/certify/truth/true_error.h"
+#include "tribound/contact/nitsche/meridian_cells.h"
 #include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
@@ -63,6 +64,7 @@ DualNorm<dim>::DualNorm(const contact::NitscheForm<dim>& form, const RicherSpace
       n_refinements_(richer.refinements),
       refined_(mesh::refine_uniformly(form.space().mesh(), richer.refinements)),
       space_(refined_.mesh, richer.degree),
+      meridian_(contact::meridian_cells(form.problem(), space_)),
       springs_(form.problem(), space_),
       parts_(form.problem(), space_)
 {
@@ -246,7 +248,7 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u, std::span
 {
   std::vector<double> r(load.begin(), load.end());
   const std::vector<double> fine = fem::nested_interpolant<dim>(form_.space(), u, refined_, space_);
-  std::vector<double> internal = contact::apply_stiffness<dim>(form_.problem(), space_, fine);
+  std::vector<double> internal = contact::apply_stiffness<dim>(form_.problem(), space_, fine, meridian_);
   springs_.add_forces(fine, internal);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] -= internal[i];
   add_contact_load(u, r);

@@ -94,6 +94,7 @@ class DualNorm
   int n_refinements_;
   mesh::Refined<dim> refined_;
   fem::LagrangeSpace<dim> space_;
+  std::shared_ptr<const contact::MeridianCells> meridian_;
   contact::Springs<dim> springs_;
   contact::RigidParts<dim> parts_;
   std::vector<double> load_;  ///< L(phi_i) + (K u_0, phi_i)_S; computed when first needed

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "tribound/base/parallel.h"
@@ -35,12 +36,13 @@ bool vanishes(std::span<const Index> nodes, std::span<const double> u)
 
 template <int dim>
 std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
-                                    const fem::LagrangeSpace<dim>& space, std::span<const double> u)
+                                    const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+                                    const std::shared_ptr<const MeridianCells>& known)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
-  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
+  const std::shared_ptr<const MeridianCells> meridian = known ? known : meridian_cells(problem, space);
   std::vector<double> result(space.n_dofs(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
@@ -149,7 +151,8 @@ std::vector<double> assemble_load(const DiscreteData<dim>& data, const fem::Lagr
 
 template <int dim>
 StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                         std::span<const double> u, const DiscreteData<dim>* data)
+                         std::span<const double> u, const DiscreteData<dim>* data,
+                         const std::shared_ptr<const MeridianCells>& known)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   std::optional<DiscreteData<dim>> made;
@@ -172,7 +175,7 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   // 42.
   constexpr double unit_round_offs = 1000;
   constexpr double negligible = 1e-5;
-  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
+  const std::shared_ptr<const MeridianCells> meridian = known ? known : meridian_cells(problem, space);
   const auto of_cell = [&](std::size_t c)
   {
     if (meridian)
@@ -220,12 +223,13 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
 
 template <int dim>
 std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                  std::span<const double> u)
+                                  std::span<const double> u,
+                                  const std::shared_ptr<const MeridianCells>& known)
 {
   const mesh::Mesh<dim>& mesh = space.mesh();
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * space.degree() - 2);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
-  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
+  const std::shared_ptr<const MeridianCells> meridian = known ? known : meridian_cells(problem, space);
   std::vector<double> energies(mesh.n_owned_cells(), 0.0);
   parallel_for(energies.size(),
                [&](std::size_t c)
@@ -280,17 +284,23 @@ void add_initial_stress(const DiscreteData<dim>& data, const fem::LagrangeSpace<
 }
 
 template std::vector<double> apply_stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                             std::span<const double>);
+                                             std::span<const double>,
+                                             const std::shared_ptr<const MeridianCells>&);
 template std::vector<double> apply_stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                             std::span<const double>);
+                                             std::span<const double>,
+                                             const std::shared_ptr<const MeridianCells>&);
 template StressNorms stress_norms(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                  std::span<const double>, const DiscreteData<2>*);
+                                  std::span<const double>, const DiscreteData<2>*,
+                                  const std::shared_ptr<const MeridianCells>&);
 template StressNorms stress_norms(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                  std::span<const double>, const DiscreteData<3>*);
+                                  std::span<const double>, const DiscreteData<3>*,
+                                  const std::shared_ptr<const MeridianCells>&);
 template std::vector<double> cell_energies(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                           std::span<const double>);
+                                           std::span<const double>,
+                                           const std::shared_ptr<const MeridianCells>&);
 template std::vector<double> cell_energies(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                           std::span<const double>);
+                                           std::span<const double>,
+                                           const std::shared_ptr<const MeridianCells>&);
 template void add_initial_stress(const DiscreteData<2>&, const fem::LagrangeSpace<2>&, std::span<double>);
 template void add_initial_stress(const DiscreteData<3>&, const fem::LagrangeSpace<3>&, std::span<double>);
 template std::vector<double> assemble_load(const DiscreteData<2>&, const fem::LagrangeSpace<2>&);

@@ -4,6 +4,7 @@
 /// Linear elasticity: sigma, the bilinear form a(u, v) = (sigma(u), eps(v)) and norms of stresses. Integrals
 /// of axisymmetric problems have the weight r and the hoop terms of meridian_cells.h.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,9 @@ template <int dim>
 class DiscreteData;
 template <int dim>
 class Springs;
+class MeridianCells;
+
+// `meridian` below: meridian_cells() of problem and space; null: made where it is needed.
 
 /// sigma = lambda tr(eps) I + 2 mu eps with eps = sym(grad u).
 template <int dim>
@@ -59,13 +63,14 @@ template <int dim>
 [[nodiscard]] algebra::SparseRows stiffness(const problem::Problem<dim>& problem,
                                             const fem::LagrangeSpace<dim>& space,
                                             const fem::Constraints& constraints,
-                                            const Springs<dim>* springs = nullptr);
+                                            const Springs<dim>* springs = nullptr,
+                                            const std::shared_ptr<const MeridianCells>& meridian = nullptr);
 
 /// a(u, phi_i) for every degree of freedom, fixed ones included, cell by cell; incomplete at ghosts.
 template <int dim>
-[[nodiscard]] std::vector<double> apply_stiffness(const problem::Problem<dim>& problem,
-                                                  const fem::LagrangeSpace<dim>& space,
-                                                  std::span<const double> u);
+[[nodiscard]] std::vector<double> apply_stiffness(
+    const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+    const std::shared_ptr<const MeridianCells>& meridian = nullptr);
 
 /// The norms of the stress of a displacement u.
 struct StressNorms
@@ -86,13 +91,14 @@ struct StressNorms
 template <int dim>
 [[nodiscard]] StressNorms stress_norms(const problem::Problem<dim>& problem,
                                        const fem::LagrangeSpace<dim>& space, std::span<const double> u,
-                                       const DiscreteData<dim>* data = nullptr);
+                                       const DiscreteData<dim>* data = nullptr,
+                                       const std::shared_ptr<const MeridianCells>& meridian = nullptr);
 
 /// (sigma(u), grad u)_T of every own cell, not halved.
 template <int dim>
-[[nodiscard]] std::vector<double> cell_energies(const problem::Problem<dim>& problem,
-                                                const fem::LagrangeSpace<dim>& space,
-                                                std::span<const double> u);
+[[nodiscard]] std::vector<double> cell_energies(
+    const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space, std::span<const double> u,
+    const std::shared_ptr<const MeridianCells>& meridian = nullptr);
 
 /// vector_i -= (sigma_0, grad phi_i) for every degree of freedom; incomplete at ghosts.
 template <int dim>

@@ -32,24 +32,27 @@ void MeridianCells::for_each_point(Index cell, const Visit& visit) const
 /// With D_ia = d_a phi_i, and phi_i / r added for a = r, the entry (a, b) is the integral of
 ///     r (lambda D_ia D_jb + mu d_b phi_i d_a phi_j + mu grad phi_i . grad phi_j delta_ab)
 /// and, for a = b = r, of 2 mu phi_i phi_j / r.
-Tensor<2> MeridianCells::stiffness_block(Index cell, int i, int j) const
+std::vector<Tensor<2>> MeridianCells::stiffness_row(Index cell, int i) const
 {
   const problem::Material& of = material(cell);
-  Tensor<2> block = Tensor<2>::Zero();
+  std::vector<Tensor<2>> row(space_.cell_nodes(cell).size(), Tensor<2>::Zero());
   for_each_point(cell,
                  [&](double r, double weight, std::span<const double> phi, std::span<const Point<2>> gradient)
                  {
                    const double hoop_i = phi[i] / r;
-                   const double hoop_j = phi[j] / r;
                    const Point<2> d_i = gradient[i] + hoop_i * Point<2>::UnitX();
-                   const Point<2> d_j = gradient[j] + hoop_j * Point<2>::UnitX();
-                   Tensor<2> density =
-                       of.lambda * d_i * d_j.transpose() + of.mu * gradient[j] * gradient[i].transpose();
-                   density.diagonal().array() += of.mu * gradient[i].dot(gradient[j]);
-                   density(0, 0) += 2 * of.mu * hoop_i * hoop_j;
-                   block += weight * density;
+                   for (std::size_t j = 0; j < row.size(); ++j)
+                   {
+                     const double hoop_j = phi[j] / r;
+                     const Point<2> d_j = gradient[j] + hoop_j * Point<2>::UnitX();
+                     Tensor<2> density =
+                         of.lambda * d_i * d_j.transpose() + of.mu * gradient[j] * gradient[i].transpose();
+                     density.diagonal().array() += of.mu * gradient[i].dot(gradient[j]);
+                     density(0, 0) += 2 * of.mu * hoop_i * hoop_j;
+                     row[j] += weight * density;
+                   }
                  });
-  return block;
+  return row;
 }
 
 namespace

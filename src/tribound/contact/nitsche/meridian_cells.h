@@ -5,7 +5,7 @@
 ///     a(u, v) = int r (sigma(u) : grad v + sigma_tt(u) v_r / r),
 /// sigma = lambda (tr grad u + u_r / r) I + 2 mu eps, sigma_tt = lambda (tr grad u + u_r / r) + 2 mu u_r / r.
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,8 +23,8 @@ class MeridianCells
  public:
   MeridianCells(const problem::Problem<2>& problem, const fem::LagrangeSpace<2>& space);
 
-  /// The block a(phi_j e_b, phi_i e_a) of the nodes i and j of a cell.
-  [[nodiscard]] Tensor<2> stiffness_block(Index cell, int i, int j) const;
+  /// The blocks a(phi_j e_b, phi_i e_a) of node i of a cell with all its nodes j.
+  [[nodiscard]] std::vector<Tensor<2>> stiffness_row(Index cell, int i) const;
   /// vector_i += a(u, phi_i) on a cell.
   void add_forces(Index cell, std::span<const double> u, std::span<double> vector) const;
 
@@ -56,12 +56,12 @@ class MeridianCells
 
 /// Those of an axisymmetric problem, otherwise none.
 template <int dim>
-[[nodiscard]] std::optional<MeridianCells> meridian_cells(const problem::Problem<dim>& problem,
-                                                          const fem::LagrangeSpace<dim>& space)
+[[nodiscard]] std::shared_ptr<const MeridianCells> meridian_cells(const problem::Problem<dim>& problem,
+                                                                  const fem::LagrangeSpace<dim>& space)
 {
   if constexpr (dim == 2)
-    if (problem.is_axisymmetric()) return MeridianCells(problem, space);
-  return {};
+    if (problem.is_axisymmetric()) return std::make_shared<const MeridianCells>(problem, space);
+  return nullptr;
 }
 
 }  // namespace tribound::contact

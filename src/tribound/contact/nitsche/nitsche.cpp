@@ -10,6 +10,7 @@
 
 #include "tribound/base/error.h"
 #include "tribound/base/parallel.h"
+#include "tribound/contact/nitsche/meridian_cells.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/describe.h"
 #include "tribound/mesh/geometry.h"
@@ -30,6 +31,7 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
                               const DataAccuracy& accuracy)
     : problem_(&problem),
       space_(&space),
+      meridian_(meridian_cells(problem, space)),
       gamma0_(gamma0),
       constraints_(fem::dirichlet(problem, space)),
       segments_(std::move(segments)),

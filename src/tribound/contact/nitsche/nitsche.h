@@ -103,6 +103,8 @@ class NitscheForm
   [[nodiscard]] const problem::Problem<dim>& problem() const { return *problem_; }
   [[nodiscard]] const fem::LagrangeSpace<dim>& space() const { return *space_; }
   [[nodiscard]] const DiscreteData<dim>& data() const { return data_; }
+  /// Null unless the problem is axisymmetric.
+  [[nodiscard]] const std::shared_ptr<const MeridianCells>& meridian() const { return meridian_; }
   [[nodiscard]] const Springs<dim>& springs() const { return springs_; }
   [[nodiscard]] const RigidParts<dim>& rigid_parts() const { return rigid_parts_; }
   /// The degrees of freedom of rigid parts are among the fixed ones.
@@ -235,6 +237,7 @@ class NitscheForm
 
   const problem::Problem<dim>* problem_;
   const fem::LagrangeSpace<dim>* space_;
+  std::shared_ptr<const MeridianCells> meridian_;
   double gamma0_;
   fem::Constraints constraints_;
   std::vector<ContactSegment<dim>> segments_;
@@ -252,6 +255,13 @@ class NitscheForm
   std::shared_ptr<const ContactHistory<dim>> history_;  ///< null: none yet
   bool has_bonds_ = false;                              ///< on any rank
 };
+
+/// The norms of sigma(u) with the data of the form.
+template <int dim>
+[[nodiscard]] StressNorms stress_norms(const NitscheForm<dim>& form, std::span<const double> u)
+{
+  return stress_norms(form.problem(), form.space(), u, &form.data(), form.meridian());
+}
 
 /// Resultants of a contact traction t given at the contact points, over all ranks; of an axisymmetric problem
 /// over the full circle, radial parts by their amounts.

@@ -8,7 +8,7 @@ namespace tribound::contact
 template <int dim>
 std::vector<double> internal_forces(const NitscheForm<dim>& form, std::span<const double> u)
 {
-  std::vector<double> result = apply_stiffness(form.problem(), form.space(), u);
+  std::vector<double> result = apply_stiffness(form.problem(), form.space(), u, form.meridian());
   form.springs().add_forces(u, result);
   return result;
 }

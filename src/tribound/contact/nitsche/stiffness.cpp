@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
@@ -95,7 +96,11 @@ class BlockRow
       const mesh::CellMap<dim> map = mesh::cell_map(space_->mesh(), c);
       const problem::Material& material = problem_->material(space_->mesh().region(c));
       const std::span<const Index> nodes = space_->cell_nodes(c);
-      for (int j = 0; j < n; ++j) blocks_[index_[nodes[j]]] += block(c, i, j, material, map);
+      if (meridian_ != nullptr)
+        add_meridian(c, i);
+      else
+        for (int j = 0; j < n; ++j)
+          blocks_[index_[nodes[j]]] += stiffness_block(material, map, reference_[i * n + j]);
       if (const auto held = on_springs_.find(c); held != on_springs_.end())
         for (const SpringFacet<dim>* facet : held->second)
           for (int j = 0; j < n; ++j) blocks_[index_[nodes[j]]] += springs_->block(*facet, i, j);
@@ -119,12 +124,13 @@ class BlockRow
     blocks_.assign(neighbours_.size(), Tensor<dim>::Zero());
   }
 
-  [[nodiscard]] Tensor<dim> block(Index cell, int i, int j, const problem::Material& material,
-                                  const mesh::CellMap<dim>& map) const
+  void add_meridian(Index cell, int i)
   {
     if constexpr (dim == 2)
-      if (meridian_ != nullptr) return meridian_->stiffness_block(cell, i, j);
-    return stiffness_block(material, map, reference_[i * space_->basis().n_nodes() + j]);
+    {
+      const std::vector<Tensor<2>> row = meridian_->stiffness_row(cell, i);
+      for (std::size_t j = 0; j < row.size(); ++j) blocks_[index_[space_->cell_nodes(cell)[j]]] += row[j];
+    }
   }
 
   const problem::Problem<dim>* problem_;
@@ -178,21 +184,21 @@ algebra::SparseRows stiffness_rows(BlockRow<dim> row, const fem::LagrangeSpace<d
 
 template <int dim>
 algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                              const fem::Constraints& constraints, const Springs<dim>* springs)
+                              const fem::Constraints& constraints, const Springs<dim>* springs,
+                              const std::shared_ptr<const MeridianCells>& known)
 {
   constexpr Index worth_a_thread = 5000;
   const NodeCells cells = cells_around_nodes(space);
   const Index n = space.n_owned_nodes();
   const int n_parts = std::clamp<int>(n / worth_a_thread, 1, max_threads());
   std::vector<algebra::SparseRows> parts(n_parts);
-  const std::optional<MeridianCells> meridian = meridian_cells(problem, space);
+  const std::shared_ptr<const MeridianCells> meridian = known ? known : meridian_cells(problem, space);
   const auto begin = [&](int part) { return static_cast<Index>(static_cast<long>(n) * part / n_parts); };
   in_threads(n_parts,
              [&](int part)
              {
-               parts[part] = stiffness_rows<dim>(
-                   BlockRow<dim>(problem, space, springs, meridian ? &*meridian : nullptr), space, cells,
-                   constraints, begin(part), begin(part + 1));
+               parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space, springs, meridian.get()),
+                                                 space, cells, constraints, begin(part), begin(part + 1));
              });
   algebra::SparseRows rows = std::move(parts.front());
   for (int part = 1; part < n_parts; ++part) rows.append(std::exchange(parts[part], {}));
@@ -200,8 +206,10 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
 }
 
 template algebra::SparseRows stiffness(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                       const fem::Constraints&, const Springs<2>*);
+                                       const fem::Constraints&, const Springs<2>*,
+                                       const std::shared_ptr<const MeridianCells>&);
 template algebra::SparseRows stiffness(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                       const fem::Constraints&, const Springs<3>*);
+                                       const fem::Constraints&, const Springs<3>*,
+                                       const std::shared_ptr<const MeridianCells>&);
 
 }  // namespace tribound::contact

@@ -129,7 +129,8 @@ std::vector<BodyFigures> body_figures(const contact::NitscheForm<dim>& form,
 {
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const mesh::Bodies found = mesh::number_bodies(mesh);
-  const std::vector<double> energies = contact::cell_energies<dim>(form.problem(), form.space(), level.u);
+  const std::vector<double> energies =
+      contact::cell_energies<dim>(form.problem(), form.space(), level.u, form.meridian());
   constexpr std::size_t width = 3;  // cells, energy, bound^2
   std::vector<double> sums(found.n * width, 0.0);
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
