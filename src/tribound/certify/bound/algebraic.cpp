@@ -7,9 +7,9 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/base/parallel.h"
-#include "tribound/certify/bound/weights.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {

@@ -6,8 +6,8 @@
 
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/algebraic.h"
-#include "tribound/certify/bound/weights.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {

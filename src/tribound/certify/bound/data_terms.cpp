@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "tribound/certify/bound/constants.h"
-#include "tribound/certify/bound/weights.h"
 #include "tribound/contact/nitsche/residual.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "tribound/certify/bound/constants.h"
-#include "tribound/certify/bound/weights.h"
 #include "tribound/contact/nitsche/segment.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {

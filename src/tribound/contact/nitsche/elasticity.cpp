@@ -13,6 +13,7 @@
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::contact
 {
@@ -99,8 +100,8 @@ double stress_that_matters(const problem::Problem<dim>& problem, const fem::Lagr
   auto& [minus_mu, displacement] = largest;
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {
-    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    volume += map.measure() * problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
+    volume += mesh::cell_map(mesh, c).measure() *
+              problem::mean_weight<dim>(problem, mesh::points_of(mesh.vertices(), mesh.cell(c)));
     minus_mu = std::max(minus_mu, -problem.material(mesh.region(c)).mu);
   }
   for (std::size_t i = 0; i < u.size(); i += dim)

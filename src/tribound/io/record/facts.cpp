@@ -14,6 +14,7 @@
 #include "tribound/doctor/load_facts.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::io
 {
@@ -36,9 +37,8 @@ std::vector<RegionFacts> region_facts(const problem::Problem<dim>& problem, cons
   {
     RegionFacts& region = regions[mesh.region(c)];
     ++region.cells;
-    const mesh::CellMap<dim> map = mesh::cell_map(mesh, c);
-    region.measure +=
-        problem.full_circle() * map.measure() * problem.weight(map(Point<dim>::Constant(1.0 / (dim + 1))));
+    region.measure += problem.full_circle() * mesh::cell_map(mesh, c).measure() *
+                      problem::mean_weight<dim>(problem, mesh::points_of(mesh.vertices(), mesh.cell(c)));
   }
   for (RegionFacts& region : regions)
   {
@@ -89,9 +89,9 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
   {
     BoundaryFacts& boundary = facet.tag < 0 ? boundaries.back() : boundaries[facet.tag];
     ++boundary.facets;
-    const Point<dim> middle =
-        mesh::facet_map(mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
-    boundary.measure += problem.full_circle() * problem.weight(middle) *
+    const auto vertices =
+        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+    boundary.measure += problem.full_circle() * problem::mean_weight<dim>(problem, vertices) *
                         mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
   }
   for (BoundaryFacts& boundary : boundaries)

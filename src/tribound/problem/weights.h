@@ -8,13 +8,12 @@
 
 #include "tribound/problem/problem.h"
 
-namespace tribound::certify
+namespace tribound::problem
 {
 
 /// The largest on the simplex with these vertices.
 template <int dim, std::size_t n>
-[[nodiscard]] double largest_weight(const problem::Problem<dim>& problem,
-                                    const std::array<Point<dim>, n>& vertices)
+[[nodiscard]] double largest_weight(const Problem<dim>& problem, const std::array<Point<dim>, n>& vertices)
 {
   double largest = 0;
   for (const Point<dim>& x : vertices) largest = std::max(largest, problem.weight(x));
@@ -23,12 +22,11 @@ template <int dim, std::size_t n>
 
 /// Its mean: the integral of the weight is the measure times this.
 template <int dim, std::size_t n>
-[[nodiscard]] double mean_weight(const problem::Problem<dim>& problem,
-                                 const std::array<Point<dim>, n>& vertices)
+[[nodiscard]] double mean_weight(const Problem<dim>& problem, const std::array<Point<dim>, n>& vertices)
 {
   double sum = 0;
   for (const Point<dim>& x : vertices) sum += problem.weight(x);
   return sum / static_cast<double>(n);
 }
 
-}  // namespace tribound::certify
+}  // namespace tribound::problem
