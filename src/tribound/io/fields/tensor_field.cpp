@@ -8,6 +8,7 @@
 
 #include "tribound/certify/equilibrate/stress_tabulation.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/doctor/load_facts.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
 
@@ -18,6 +19,11 @@ double out_of_plane_ratio(const problem::Material& material)
 {
   if (material.plane == problem::PlaneModel::stress) return 0.0;
   return material.lambda / (2.0 * (material.lambda + material.mu));
+}
+
+double added_around_axis(const problem::Material& material, double hoop_strain)
+{
+  return doctor::elastic_constants(material, 3).E * hoop_strain;
 }
 
 template <int dim>
@@ -157,11 +163,10 @@ TensorField<dim> stress_field(const problem::Problem<dim>& problem, const fem::L
   if (problem.is_axisymmetric())
     field.hoop = [&problem, &space, nodes](Index cell, std::span<double> values)
     {
-      const auto& [lambda, mu, plane, expansion] = problem.material(space.mesh().region(cell));
-      const double E = mu * (3 * lambda + 2 * mu) / (lambda + mu);
+      const problem::Material& material = problem.material(space.mesh().region(cell));
       const mesh::CellMap<dim> map = mesh::cell_map(space.mesh(), cell);
       for (int i = 0; i < nodes->size(); ++i)
-        values[i] = E * nodes->hoop(cell, i, nodes->gradient(cell, i, map));
+        values[i] = added_around_axis(material, nodes->hoop(cell, i, nodes->gradient(cell, i, map)));
     };
   return field;
 }

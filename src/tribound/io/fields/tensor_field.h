@@ -24,8 +24,7 @@ struct TensorField
 {
   std::string name;
   std::function<void(Index cell, std::span<Tensor<dim>> values)> at_nodes;
-  /// On a meridian: E u_r / r at the nodes, which the hoop stress has beside out_of_plane_ratio() (sigma_rr +
-  /// sigma_zz); elsewhere empty.
+  /// On a meridian: added_around_axis() at the nodes; elsewhere empty.
   std::function<void(Index cell, std::span<double> values)> hoop{};
 
   /// The values of `hoop`, 0 where it is empty.
@@ -58,6 +57,8 @@ template <int dim>
 /// sigma_zz / (sigma_xx + sigma_yy) in 2D, zz being the direction around the axis on a meridian: nu = lambda
 /// / (2 (lambda + mu)) in plane strain, 0 in plane stress.
 [[nodiscard]] double out_of_plane_ratio(const problem::Material& material);
+/// E u_r / r: what the hoop stress has on a meridian beside nu (sigma_rr + sigma_zz).
+[[nodiscard]] double added_around_axis(const problem::Material& material, double hoop_strain);
 
 /// What the initial stress adds to sigma_zz in 2D, sigma_0,zz - ratio (sigma_0,xx + sigma_0,yy); 0 in 3D.
 template <int dim>

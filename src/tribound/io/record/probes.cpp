@@ -182,9 +182,7 @@ std::pair<Tensor<dim>, double> stress_at(const contact::NitscheForm<dim>& form, 
           fem::gradient_at<2>(space.cell_nodes(cell), u, table.gradients_at(0), map.inverse_transpose);
       const double u_r = fem::value_at<2>(space.cell_nodes(cell), u, table.values_at(0))[0];
       const double hoop = contact::hoop_strain(map(xhat)[0], u_r, gradient(0, 0));
-      const Tensor<2> sigma = contact::sigma<2>(material, gradient, hoop);
-      return {sigma,
-              contact::hoop_stress(material, gradient, hoop) - out_of_plane_ratio(material) * sigma.trace()};
+      return {contact::sigma<2>(material, gradient, hoop), added_around_axis(material, hoop)};
     }
   return {values_at<dim>(field, space.basis(), cell, at)[0], 0.0};
 }
