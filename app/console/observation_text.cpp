@@ -118,15 +118,14 @@ void append_cleared(std::span<const double> values, double scale, std::vector<do
 std::string sections_text(std::span<const io::SectionRecord> sections, const io::CaseFacts& facts)
 {
   if (sections.empty()) return {};
-  const bool is_plane = facts.dimension == 2;
-  const std::vector<std::string> heads =
-      is_plane ? std::vector<std::string>{"N", "V", "M"}
-               : std::vector<std::string>{"N", "V_1", "V_2", "M_n", "M_1", "M_2"};
+  std::vector<std::string> heads = {"N", "V_1", "V_2", "M_n", "M_1", "M_2"};
+  if (facts.dimension == 2) heads = {"N", "V", "M"};
+  if (facts.is_axisymmetric) heads = {"N", "V"};
   double force = 0;
   double moment = 0;
   for (const io::SectionRecord& section : sections)
   {
-    force = largest_of(section.force, force);
+    force = largest_of(section.V, std::max(force, std::abs(section.N)));
     moment = largest_of(section.moment, moment);
   }
   std::vector<ProbeLine> lines;
@@ -135,12 +134,18 @@ std::string sections_text(std::span<const io::SectionRecord> sections, const io:
     std::vector<double>& numbers = lines.emplace_back(ProbeLine{section.name, {}}).numbers;
     append_cleared({&section.N, 1}, force, numbers);
     append_cleared(section.V, force, numbers);
-    append_cleared(section.M, moment, numbers);
+    if (!facts.is_axisymmetric) append_cleared(section.M, moment, numbers);
   }
   const std::string units = facts.units.are_named()
                                 ? fmt::format("forces in {}, moments in {}; ", facts.label(UnitOf::force),
                                               facts.label(UnitOf::moment))
                                 : std::string();
+  if (facts.is_axisymmetric)
+    return number_table("sections", heads, lines) +
+           paragraph("", (facts.units.are_named() ? fmt::format("forces in {}; ", facts.label(UnitOf::force))
+                                                  : std::string()) +
+                             "of the full circle, on the part behind the section; along the axis in "
+                             "equilibrium with the loads, without error bars");
   const std::string& note = sections[0].note;
   return number_table("sections", heads, lines) +
          paragraph("", units + "on the part behind the plane, moments about its point; " +

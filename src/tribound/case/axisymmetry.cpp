@@ -18,14 +18,6 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
   throw InputError(where, fmt::format("a case with model = \"axisymmetric\" has no {}", what), right);
 }
 
-/// The tables that it does not have.
-void check_tables(const TableReader& root)
-{
-  if (const Node* node = root.find("section")) refuse(node->where, "sections", to_3d);
-  if (const Node* node = root.find("quantity"))
-    refuse(node->where, "quantities with intervals", "probes, or the forces that a run reports");
-}
-
 void check_contact(const problem::Contact& contact, const Where& where)
 {
   if (problem::has_memory(contact.law))
@@ -55,7 +47,6 @@ void read_model(const TableReader& root, Config& config)
   if (model == nullptr) return;
   (void)to_choice(*model, root.key_of("model").value.words);
   config.is_axisymmetric = true;
-  check_tables(root);
   for (const MaterialConfig& material : config.materials)
     if (material.plane == problem::PlaneModel::stress)
       refuse(inside(material.where, "plane"), "plane stress",
@@ -68,7 +59,8 @@ void read_model(const TableReader& root, Config& config)
   if (config.history && config.history->refine == Refine::transfer)
     refuse(inside(config.history->where, "refine"), "refinement within load steps",
            "refine = \"replay\" or \"none\"");
-  if (config.adapt.bars.energy_tolerance || config.adapt.measure == adapt::ErrorMeasure::energy)
+  const adapt::ErrorBars& bars = config.adapt.bars;
+  if (bars.energy_tolerance || !bars.goal.empty() || config.adapt.measure == adapt::ErrorMeasure::energy)
     refuse(root.require("adapt").where, "bound in the energy norm",
            "the bound of the residual: tolerance = 0.05");
 }

@@ -26,6 +26,9 @@ int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
   const bool may_be_all = !is_safety && !is_of_spring && quantity.kind != QuantityKind::mean_displacement;
   if (is_of_contact && !problem.has_contact())
     throw InputError(quantity.where, "nothing touches anything", "forces are those of contact boundaries");
+  if (quantity.kind == QuantityKind::contact_moment && problem.is_axisymmetric())
+    throw InputError(quantity.where, "the moments on bodies of revolution cancel around the axis",
+                     "kind = \"contact_force\"");
   if (quantity.boundary.empty() && may_be_all) return -1;
   const int tag = group_number(quantity.boundary, boundary_names, quantity.where, "boundary");
   if (is_of_contact && problem.contact(tag) == nullptr)

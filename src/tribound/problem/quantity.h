@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file quantity.h
-/// Quantities of interest of a solution: energies, forces, displacements.
+/// Quantities of interest of a solution: energies and forces (of the full circle), displacements.
 
 #include <optional>
 #include <span>
@@ -68,8 +68,8 @@ struct Quantity
 };
 
 /// The number of its boundary; -1 if it refers to all contact boundaries or to the whole. Throws InputError
-/// if there is no such boundary, no contact for a force or moment, no spring for its force, or no friction
-/// coefficient for a safety factor.
+/// if there is no such boundary, no contact for a force or moment, no spring for its force, no friction
+/// coefficient for a safety factor, or for moments on bodies of revolution.
 template <int dim>
 [[nodiscard]] int boundary_number(const Quantity<dim>& quantity, const Problem<dim>& problem,
                                   std::span<const std::string> boundary_names);

@@ -170,6 +170,7 @@ template <int dim>
 std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                             const ContactResultant<dim>& resultant)
 {
+  if (form.problem().is_axisymmetric()) return {};
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
   const std::vector<double> moved = moved_bodies(form, bodies, resultant);

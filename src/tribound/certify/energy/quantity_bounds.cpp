@@ -125,19 +125,21 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
                                   std::span<const Point<dim>> t) const
 {
   const auto of_contact = [&](std::size_t i) { return contact_work<dim>(form_, t, item.numbers[i].phi); };
+  const double full_circle = form_.problem().full_circle();
   switch (item.kind())
   {
     case QuantityKind::energy:
-      return contact::stress_norms<dim>(form_.problem(), form_.space(), u, &form_.data()).energy;
+      return full_circle *
+             contact::stress_norms<dim>(form_.problem(), form_.space(), u, &form_.data()).energy;
     case QuantityKind::load_work:
-      return contact::load_work<dim>(form_, u);
+      return full_circle * contact::load_work<dim>(form_, u);
     case QuantityKind::mean_displacement:
       return mean_displacement<dim>(form_, item.parts, u);
     case QuantityKind::spring_force:
-      return form_.springs().force(item.parts.tag, u).dot(item.parts.direction);
+      return full_circle * form_.springs().force(item.parts.tag, u).dot(item.parts.direction);
     case QuantityKind::contact_force:
     case QuantityKind::contact_moment:
-      return of_contact(0);
+      return full_circle * of_contact(0);
     case QuantityKind::safety_factor:
       break;
   }

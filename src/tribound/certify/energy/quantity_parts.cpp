@@ -15,7 +15,8 @@ namespace
 
 using problem::QuantityKind;
 
-/// The measure and the mean outward normal of a boundary; 0 if there is none.
+/// The measure and the mean outward normal of a boundary, on a meridian with the weight r; 0 if there is
+/// none.
 template <int dim>
 void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& parts)
 {
@@ -27,8 +28,11 @@ void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& par
         parts.tag >= 0 ? facet.tag == parts.tag : form.problem().contact(facet.tag) != nullptr;
     if (!counts) continue;
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    sum.template head<dim>() += geometry.measure * geometry.normal;
-    sum[dim] += geometry.measure;
+    const Point<dim> middle =
+        mesh::facet_map(mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
+    const double measure = form.problem().weight(middle) * geometry.measure;
+    sum.template head<dim>() += measure * geometry.normal;
+    sum[dim] += measure;
   }
   mesh.ranks().sum(std::span(sum.data(), sum.size()));
   parts.measure = sum[dim];
@@ -101,6 +105,11 @@ void set_safety_parts(const contact::NitscheForm<dim>& form, QuantityParts<dim>&
     parts.reason = "the boundary is not plane";
     return;
   }
+  if (form.problem().is_axisymmetric() && n[1] != 0)
+  {
+    parts.reason = "a body of revolution slides on cylinders alone";
+    return;
+  }
   parts.resultants.push_back({.tag = parts.tag, .motion = {.translation = -n}});
   for (const Point<dim>& t : tangents<dim>(n))
     parts.resultants.push_back({.tag = parts.tag, .motion = {.translation = t}});
@@ -124,6 +133,8 @@ QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form, const problem
     set_safety_parts(form, parts);
     return parts;
   }
+  if (quantity.kind == QuantityKind::mean_displacement && parts.measure == 0)
+    parts.reason = "the boundary is the axis";
   if (quantity.direction) parts.direction = quantity.direction->normalized();
   const bool needs_direction = dim == 3 || quantity.kind != QuantityKind::contact_moment;
   if (needs_direction && parts.direction.isZero())
@@ -152,8 +163,8 @@ double mean_displacement(const contact::NitscheForm<dim>& form, const QuantityPa
     std::optional<fem::Tabulation<dim>>& table = tables[facet.local];
     if (!table) table = space.basis().tabulate(fem::points_on_facet<dim>(facet.local, rule.points));
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      sum +=
-          dx * parts.direction.dot(fem::value_at<dim>(space.cell_nodes(facet.cell), u, table->values_at(q)));
+      sum += form.problem().weight(x) * dx *
+             parts.direction.dot(fem::value_at<dim>(space.cell_nodes(facet.cell), u, table->values_at(q)));
   }
   return mesh.ranks().sum(sum) / parts.measure;
 }

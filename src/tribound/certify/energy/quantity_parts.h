@@ -24,7 +24,7 @@ struct QuantityParts
   double coefficient = 0;                     ///< mu_F of safety factors
   KnownNumber uplift{};                       ///< U = integral of p_w for safety factors
   Point<dim> direction = Point<dim>::Zero();  ///< e of mean displacements and springs, a unit vector
-  double measure = 0;                         ///< of their boundary
+  double measure = 0;                         ///< of their boundary, on a meridian with the weight r
   std::string note{};                         ///< what else its value depends on
   std::string reason{};                       ///< why it is not a number; empty: it is one
 };
@@ -35,7 +35,7 @@ template <int dim>
 [[nodiscard]] QuantityParts<dim> parts_of(const contact::NitscheForm<dim>& form,
                                           const problem::Quantity<dim>& quantity);
 
-/// The mean of u . e over the boundary of a mean displacement.
+/// The mean of u . e over the boundary of a mean displacement, on a meridian with the weight r.
 template <int dim>
 [[nodiscard]] double mean_displacement(const contact::NitscheForm<dim>& form, const QuantityParts<dim>& parts,
                                        std::span<const double> u);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -47,6 +48,13 @@ struct SectionSum
     std::copy_n(&sums[1], dim, force.data());
     std::copy_n(&sums[1 + dim], n_moments, moment.data());
   }
+  /// From one radian to the full circle, around which moments cancel.
+  void turn(double full_circle)
+  {
+    measure *= full_circle;
+    force *= full_circle;
+    moment.setZero();
+  }
 };
 
 /// Integrates over what sections have of cells.
@@ -54,11 +62,13 @@ template <int dim>
 class SectionIntegrals
 {
  public:
-  SectionIntegrals(const fem::LagrangeSpace<dim>& space, const certify::Stress<dim>& stress)
-      : space_(space),
-        sigma_h_(equilibrated_stress_field(space, stress)),
-        facet_rule_(fem::quadrature<dim - 1>(space.degree() + 1)),
-        cell_rule_(fem::quadrature<dim>(space.degree())),
+  SectionIntegrals(const contact::NitscheForm<dim>& form, const certify::Stress<dim>& stress)
+      : problem_(form.problem()),
+        space_(stress.degree == form.space().degree() ? form.space()
+                                                      : richer_.emplace(form.space().mesh(), stress.degree)),
+        sigma_h_(equilibrated_stress_field(space_, stress)),
+        facet_rule_(fem::quadrature<dim - 1>(stress.degree + 1)),
+        cell_rule_(fem::quadrature<dim>(stress.degree)),
         takes_away_(stress.is_symmetric())
   {
   }
@@ -74,6 +84,7 @@ class SectionIntegrals
                           if (takes_away_) take_away(c, map, part, sum);
                       });
     sum.add_up(space_.mesh().ranks());
+    if (problem_.is_axisymmetric()) sum.turn(problem_.full_circle());
     return sum;
   }
 
@@ -90,7 +101,7 @@ class SectionIntegrals
     {
       const double weight = scale * facet_rule_.weights[q];
       const Point<dim> force = weight * sigma[q] * section.normal;
-      sum.measure += weight;
+      sum.measure += problem_.weight(map(points[q])) * weight;
       sum.force += force;
       sum.moment += contact::moment(Point<dim>(map(points[q]) - section.point), force);
     }
@@ -108,7 +119,9 @@ class SectionIntegrals
       sum.moment -= scale * cell_rule_.weights[q] * axial<dim>(sigma[q]);
   }
 
-  const fem::LagrangeSpace<dim>& space_;
+  const problem::Problem<dim>& problem_;
+  std::optional<fem::LagrangeSpace<dim>> richer_;
+  const fem::LagrangeSpace<dim>& space_;  ///< of the degree of the stress
   TensorField<dim> sigma_h_;
   fem::Quadrature<dim - 1> facet_rule_;
   fem::Quadrature<dim> cell_rule_;
@@ -134,7 +147,8 @@ std::array<Point<dim>, dim> axes_of(const Point<dim>& n)
 }
 
 template <int dim>
-SectionRecord record_of(const Section<dim>& section, const SectionSum<dim>& sum, const std::string& note)
+SectionRecord record_of(const Section<dim>& section, const SectionSum<dim>& sum, bool is_axisymmetric,
+                        const std::string& note)
 {
   SectionRecord record{.name = section.name,
                        .measure = sum.measure,
@@ -153,6 +167,7 @@ SectionRecord record_of(const Section<dim>& section, const SectionSum<dim>& sum,
     if constexpr (dim == 3) record.M.push_back(sum.moment.dot(axes[k]));
   }
   if constexpr (dim == 2) record.M.push_back(sum.moment[0]);
+  if (is_axisymmetric) record.force[0] = 0;  // around the axis the radial forces cancel
   return record;
 }
 
@@ -190,9 +205,10 @@ std::vector<SectionRecord> read_sections(const contact::NitscheForm<dim>& form,
   if (sections.empty()) return {};
   std::string note;
   std::optional<certify::Stress<dim>> own;
+  const bool is_axisymmetric = form.problem().is_axisymmetric();
   if (level.stress.degree == 1)
     note = "moments need degree 2 or more: the stress is not symmetric on average";
-  if (level.stress.degree > 1 && !level.stress.is_symmetric()) try
+  if (level.stress.degree > 1 && !level.stress.is_symmetric() && !is_axisymmetric) try
     {
       own = certify::equilibrate<dim>(form, level.u, level.traction, 0, 0, certify::PatchStress::afw);
     }
@@ -200,11 +216,11 @@ std::vector<SectionRecord> read_sections(const contact::NitscheForm<dim>& form,
     {
       note = std::string("moments need a weakly symmetric stress, and there is none: ") + error.what();
     }
-  const SectionIntegrals<dim> integrals(form.space(), own ? *own : level.stress);
+  const SectionIntegrals<dim> integrals(form, own ? *own : level.stress);
   std::vector<SectionRecord> records;
   records.reserve(sections.size());
   for (const Section<dim>& section : sections)
-    records.push_back(record_of<dim>(section, integrals.of(section), note));
+    records.push_back(record_of<dim>(section, integrals.of(section), is_axisymmetric, note));
   return records;
 }
 

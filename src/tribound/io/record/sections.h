@@ -28,7 +28,7 @@ struct Section
 };
 
 /// What the part in front of the plane, to which n points, exerts on the part behind it; per unit of depth in
-/// 2D. Moments are about Section::point.
+/// 2D. Moments are about Section::point. Of bodies of revolution: see docs/revolution.md.
 struct SectionRecord
 {
   std::string name;
@@ -52,9 +52,9 @@ void check_sections(const mesh::Mesh<dim>& mesh, std::span<const Section<dim>> s
 ///     M = sum of int_{T & S} (x - point) x sigma_h n - int_{T-} a(sigma_h),
 /// T- the part of a cut cell T behind S, a = (s_32 - s_23, s_13 - s_31, s_21 - s_12) the axial vector, in 2D
 /// its last entry: exact for polynomials of degree p. Facets in S count with the cell behind it. They are in
-/// equilibrium with the loads on either side (docs/method.md, section 4.7). Moments need p >= 2 and the
-/// weakly symmetric stress, which is made here where `level` has another one. All ranks call it together; the
-/// result is the same on all. `level` must have its stress.
+/// equilibrium with the loads on either side (docs/method.md, sections 4.7 and 19.4). Moments need p >= 2 and
+/// the weakly symmetric stress, which is made here where `level` has another one; on a meridian they are 0.
+/// All ranks call it together; the result is the same on all. `level` must have its stress.
 template <int dim>
 [[nodiscard]] std::vector<SectionRecord> read_sections(const contact::NitscheForm<dim>& form,
                                                        const adapt::CertifiedLevel<dim>& level,
