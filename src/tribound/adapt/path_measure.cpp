@@ -72,7 +72,7 @@ void add_at_mouth(const contact::NitscheForm<dim>& form, int tag, Jump jump, dou
   form.add_contact_load(t, c);
 }
 
-/// The integral of value(i) at contact points i over all bonded interfaces.
+/// The integral of value(i) at contact points i over all bonded interfaces, on the full circle.
 template <int dim, class Value>
 double sum_over_bonds(const contact::NitscheForm<dim>& form, const Value& value)
 {
@@ -80,7 +80,7 @@ double sum_over_bonds(const contact::NitscheForm<dim>& form, const Value& value)
   for (std::size_t i = 0; i < form.n_owned_contact_points(); ++i)
     if (problem::cone(form.segments()[i / form.n_segment_points()].contact->law).is_bonded)
       sum += form.contact_points()[i].weight * value(i);
-  return form.space().mesh().ranks().sum(sum);
+  return form.problem().full_circle() * form.space().mesh().ranks().sum(sum);
 }
 
 }  // namespace
@@ -157,6 +157,7 @@ std::array<double, 2> PathMeasure<dim>::derivatives(const contact::NitscheForm<d
     }
   }
   form.space().mesh().ranks().sum(std::span(sums));
+  for (double& value : sums) value *= form.problem().full_circle();
   return sums;
 }
 

@@ -53,7 +53,7 @@ template <int dim>
 [[nodiscard]] std::vector<double> functional(const contact::NitscheForm<dim>& form,
                                              std::span<const Gauge> gauges);
 
-/// Length or area of all bonded interfaces. All ranks call it together.
+/// Length or area of all bonded interfaces, of the full circle. All ranks call it together.
 template <int dim>
 [[nodiscard]] double bonded_measure(const contact::NitscheForm<dim>& form);
 

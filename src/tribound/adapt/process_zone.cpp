@@ -65,7 +65,7 @@ double moving_share(const LoadStep<dim>& step)
     if (moves && problem::cone(form.segments()[i / form.n_segment_points()].contact->law).is_bonded)
       moving += form.contact_points()[i].weight;
   }
-  return form.space().mesh().ranks().sum(moving) / bonded_measure(form);
+  return form.problem().full_circle() * form.space().mesh().ranks().sum(moving) / bonded_measure(form);
 }
 
 template std::optional<PathMeasure<2>> zone_measure(const contact::NitscheForm<2>&,

@@ -20,8 +20,6 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
 
 void check_contact(const problem::Contact& contact, const Where& where)
 {
-  if (problem::has_memory(contact.law))
-    refuse(where, "interfaces with a history", "contact = { friction = ... }");
   if (std::holds_alternative<problem::Slider>(contact.law))
     refuse(where, "sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
   if (contact.water) refuse(where, "water in its joints", to_3d);
@@ -56,9 +54,6 @@ void read_model(const TableReader& root, Config& config)
       refuse(load.where, "temperatures and initial stresses", "forces per volume: body = [0, -9.81]");
   for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
   for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
-  if (config.history && config.history->refine == Refine::transfer)
-    refuse(inside(config.history->where, "refine"), "refinement within load steps",
-           "refine = \"replay\" or \"none\"");
   const adapt::ErrorBars& bars = config.adapt.bars;
   if (bars.energy_tolerance || !bars.goal.empty() || config.adapt.measure == adapt::ErrorMeasure::energy)
     refuse(root.require("adapt").where, "bound in the energy norm",

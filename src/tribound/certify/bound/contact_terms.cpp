@@ -42,6 +42,18 @@ Bond bond_on(const contact::NitscheForm<dim>& form, int k)
              : Bond::damaged;
 }
 
+/// A law that breaks at `factor` times the traction.
+problem::ContactLaw with_strength_times(double factor, problem::ContactLaw law)
+{
+  if (auto* joint = std::get_if<problem::JointLaw>(&law))
+  {
+    joint->tension.strength *= factor;
+    joint->cohesion *= factor;
+  }
+  if (auto* mixed = std::get_if<problem::MixedLaw>(&law)) mixed->tension.strength *= factor;
+  return law;
+}
+
 /// Adds h_k ||t^n||_k^2 and h_k ||t^t||_k^2 of a traction with the given coefficients.
 template <int dim>
 void add_squares(std::span<const Point<dim>> traction, const contact::ContactSegment<dim>& segment,
@@ -225,8 +237,11 @@ auto ContactTerms<dim>::integrate(int k, const Fields& fields, const Piece& piec
     strengths[q] = m * point.strength;
   }
   const bool turns = segment.varying_normal != nullptr;
-  result.kinks = kinks_(law, points.normals.first(turns ? rule.size() : 1), augmented, strengths,
-                        bond_on(form_, k), largest.scale * result.round_off);
+  const Bond bond = bond_on(form_, k);
+  std::optional<problem::ContactLaw> of_m_p;  // a fresh bond is compared with m P
+  if (scaled && bond == Bond::fresh) of_m_p = with_strength_times(1 / largest.square_weight, law);
+  result.kinks = kinks_(of_m_p ? *of_m_p : law, points.normals.first(turns ? rule.size() : 1), augmented,
+                        strengths, bond, largest.scale * result.round_off);
   result.kinks.hidden *= largest.square_weight;
   if (!turns) return result;
   std::vector<double> weights(rule.size());
