@@ -3,8 +3,8 @@
 /// @file meridian_cell.h
 /// A cell of an axisymmetric problem with all that the patches around its vertices need of it.
 ///
-/// The rows of tau = r sigma are of degree q = p + 1, multiples of r on cells with an edge on the axis. Their
-/// coefficients belong to the basis of Stress, phi_j / sqrt(det J); the first of these span P^p.
+/// The rows of tau = r sigma are of degree q = p + 1, multiples of r on cells with an edge on the axis.
+/// Coefficients are those of certify/equilibrate/meridian_fields.h.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,26 +12,13 @@
 #include <vector>
 
 #include "tribound/base/dense_factors.h"
+#include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/certify/equilibrate/sorted_cell.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/fem/meridian_rules.h"
 
 namespace tribound::certify
 {
-
-/// Integrals on the reference triangle and the reference facet for the degree p of a space.
-struct MeridianReference
-{
-  explicit MeridianReference(int p);
-
-  int n_stress;                                 ///< dim P^q
-  int n_divergence;                             ///< dim P^p
-  int n_facet;                                  ///< dim P^q of a facet
-  std::array<Eigen::MatrixXd, 2> derivative;    ///< d_k phi_j in P^p
-  std::array<Eigen::MatrixXd, 3> trace;         ///< phi_j on facet f, in its orthonormal basis theta
-  std::array<Eigen::MatrixXd, 3> hat;           ///< lambda_a phi_j in P^q for phi_j in P^p
-  std::array<Eigen::MatrixXd, 2> hat_on_facet;  ///< lambda_v theta_j in P^q for theta_j in P^p
-};
 
 /// Vertices ascend, as in SortedCell. `row` 0 is the radial one, 1 the axial one.
 struct MeridianCell
@@ -71,29 +58,20 @@ class MeridianCellSource
   /// The form must outlive the object.
   explicit MeridianCellSource(const contact::NitscheForm<2>& form);
 
-  [[nodiscard]] const MeridianReference& reference() const { return reference_; }
+  [[nodiscard]] const MeridianReference& reference() const { return fields_.reference(); }
   /// Throws SolveError for a cell without volume. Any number of threads may call it.
   [[nodiscard]] MeridianCell prepare(Index c, std::span<const double> u) const;
 
  private:
-  static constexpr int n_permutations = 6;
-  /// phi at the points of a rule, row by row, for each permutation_number() of a cell in whose own
-  /// coordinates the points are given.
-  using Tables = std::array<Eigen::MatrixXd, n_permutations>;
-  [[nodiscard]] static Tables tabulate(int degree, const fem::Quadrature<2>& rule);
-
   void find_operators(MeridianCell& cell, Index c, int permutation) const;
-  void find_stress(MeridianCell& cell, Index c, int permutation, std::span<const double> u) const;
+  void find_stress(MeridianCell& cell, Index c, std::span<const double> u) const;
   void find_body_moments(MeridianCell& cell, Index c, int permutation) const;
 
   const contact::NitscheForm<2>& form_;
-  MeridianReference reference_;
+  MeridianFields fields_;
   fem::MeridianRules rules_;
-  std::vector<Tables> phi_;  ///< P^q at the points of each of them
-  fem::Quadrature<2> stress_rule_;
-  Tables stress_phi_;                     ///< P^p at its points
-  fem::Tabulation<2> stress_tabulation_;  ///< the basis of the space there
-  Tables body_phi_;                       ///< P^p at the points of the rule of the loads
+  std::vector<PermutedTables> phi_;  ///< P^q at the points of each of them
+  PermutedTables body_phi_;          ///< P^p at the points of the rule of the loads
 };
 
 }  // namespace tribound::certify
