@@ -48,6 +48,14 @@ Quadrature<2> collapsed_at(int vertex, int degree, int degree_along)
   return rule;
 }
 
+std::vector<std::array<double, 3>> radii_of_cells(const mesh::Mesh<2>& mesh)
+{
+  std::vector<std::array<double, 3>> radii(mesh.n_cells());
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (int i = 0; i < 3; ++i) radii[c][i] = mesh.vertex(mesh.cell(c)[i])[0];
+  return radii;
+}
+
 }  // namespace
 
 double inverse_radius_error(double least, double largest, int extra)
@@ -60,15 +68,19 @@ double inverse_radius_error(double least, double largest, int extra)
 }
 
 MeridianRules::MeridianRules(const mesh::Mesh<2>& mesh, int degree)
-    : numbers_(mesh.n_cells()), errors_(mesh.n_cells(), 0.0)
+    : MeridianRules(radii_of_cells(mesh), degree)
+{
+}
+
+MeridianRules::MeridianRules(std::span<const std::array<double, 3>> radii, int degree)
+    : numbers_(radii.size()), errors_(radii.size(), 0.0)
 {
   constexpr std::size_t n_levels = extra_degrees.size();
   std::array<int, 4 * n_levels> known;  // plain rules, then those collapsed at each vertex
   known.fill(-1);
-  for (Index c = 0; c < mesh.n_cells(); ++c)
+  for (std::size_t c = 0; c < radii.size(); ++c)
   {
-    std::array<double, 3> r;
-    for (int i = 0; i < 3; ++i) r[i] = mesh.vertex(mesh.cell(c)[i])[0];
+    const std::array<double, 3>& r = radii[c];
     const auto n_on_axis = std::ranges::count(r, 0.0);
     const int lowest = static_cast<int>(std::ranges::min_element(r) - r.begin());
     std::size_t level = 0;  // enough where an edge is on the axis: Q / r is a polynomial

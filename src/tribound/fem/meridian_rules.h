@@ -3,7 +3,9 @@
 /// @file meridian_rules.h
 /// Rules for integrals over the radius on the cells of a meridian mesh, whose points are (r, z) with r >= 0.
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "tribound/fem/quadrature.h"
@@ -25,6 +27,8 @@ class MeridianRules
 {
  public:
   MeridianRules(const mesh::Mesh<2>& mesh, int degree);
+  /// For any triangles in place of the cells, with these radii of their vertices.
+  MeridianRules(std::span<const std::array<double, 3>> radii, int degree);
 
   [[nodiscard]] int size() const { return static_cast<int>(rules_.size()); }
   [[nodiscard]] const Quadrature<2>& operator[](int number) const { return rules_[number]; }

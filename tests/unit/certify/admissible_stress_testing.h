@@ -212,6 +212,8 @@ class DenseAdmissible
         tau_.segment(a * block, block) += inverse(a, b) * difference.segment(b * block, block);
   }
 
+  /// In rows; column (e * (dim + 1) + i) * n + j is entry e = (r, c), r <= c, on function j of piece i.
+  [[nodiscard]] const Eigen::MatrixXd& constraints() const { return matrix_; }
   [[nodiscard]] double square() const { return square_; }
   [[nodiscard]] double residual() const { return residual_; }  ///< relative, of the constraints
   /// Dimension of the kernel of the constraints.

@@ -203,25 +203,60 @@ std::vector<double> column_by_column(const Eigen::MatrixXd& matrix)
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-}  // namespace
+/// The moments (t . tau t, theta)_F of a symmetric stress on a facet of the cell, t the tangent.
+Eigen::MatrixXd along_facet(const Pieces<2>& pieces, int degree, int facet)
+{
+  const std::array<Point<2>, 2> ends = mesh::facet_vertices(pieces.whole(), facet);
+  const Point<2> tangent = (ends[1] - ends[0]).normalized();
+  const SymmetricVector<2> entries = symmetric_vector<2>(tangent * tangent.transpose());
+  const fem::Quadrature<1> rule = fem::quadrature<1>(2 * degree);
+  const int n = pieces.n();
+  Eigen::VectorXd theta(fem::polynomial_dimension(1, degree));
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(theta.size(), AlfeldSizes<2, 1>::components * 3 * n);
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    fem::orthonormal_values<1>(degree, rule.points[q], {theta.data(), std::size_t(theta.size())});
+    const Point<2> x = mesh::facet_map<2>(ends)(rule.points[q]);
+    for (int a = 0; a < entries.size(); ++a)
+      result.middleCols((a * 3 + facet) * n, n) +=
+          rule.weights[q] * entries[a] * theta * pieces.values(facet, x, degree).transpose();
+  }
+  return result;
+}
+
+/// On the coefficients of P^degree less the first: the orthogonal projection onto the functions of mean 0
+/// that vanish on a facet.
+Eigen::MatrixXd projection_onto_vanishing(int degree, int facet)
+{
+  const int n = fem::polynomial_dimension(2, degree);
+  const int n_less = fem::polynomial_dimension(2, degree - 1);
+  const fem::Quadrature<2> rule = fem::quadrature<2>(2 * degree);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(n, n_less);  // of lambda phi_l
+  Eigen::VectorXd phi(n);
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    fem::orthonormal_values<2>(degree, rule.points[q], {phi.data(), std::size_t(n)});
+    products +=
+        rule.weights[q] * fem::barycentric<2>(rule.points[q])[facet] * phi * phi.head(n_less).transpose();
+  }
+  const Eigen::MatrixXd onto =
+      products * CholeskyFactors(products.transpose() * products).solve(products.transpose());
+  return (onto - onto.col(0) * onto.row(0) / onto(0, 0)).bottomRightCorner(n - 1, n - 1);
+}
 
 // B^T = Q R P^T: the last columns of Q span the kernel of B. With the independent rows of B first, x = Q_1
-// R_1^{-T} (P^T c)_1 solves B x = c; all rows but the rigid motions are independent. Large products use
-// vector instructions: Eigen's would start threads, and a program compiled without OpenMP has its own version
-// of the functions that they call, which the linker may take for both.
-template <int dim>
-AlfeldFactors alfeld_factors(int q)
+// R_1^{-T} (P^T c)_1 solves B x = c for the columns of `data`. Large products use vector instructions:
+// Eigen's would start threads, and a program compiled without OpenMP has its own version of the functions
+// that they call, which the linker may take for both.
+AlfeldFactors solve_constraints(const Eigen::MatrixXd& constraints, const Eigen::MatrixXd& given,
+                                Eigen::Index n_dependent)
 {
-  const Pieces<dim> pieces(q);
-  const RowConstraints<dim> row_constraints(pieces, q);
-  const Eigen::MatrixXd restriction = restriction_to(pieces, q);
-  const Eigen::MatrixXd constraints = symmetric_constraints(row_constraints);
   const PivotedQr qr(constraints.transpose());
-  const Eigen::Index rank = constraints.rows() - dim * (dim + 1) / 2;
+  const Eigen::Index rank = constraints.rows() - n_dependent;
   const Eigen::Index n = constraints.cols();
   const Eigen::MatrixXd triangle = qr.upper();
 
-  Eigen::MatrixXd data = qr.permuted(of_skew_functions(row_constraints, restriction));
+  Eigen::MatrixXd data = qr.permuted(given);
   data.conservativeResize(rank, Eigen::NoChange);
   data = solve_lower(triangle.topLeftCorner(rank, rank).transpose(), data);
   Eigen::MatrixXd columns =
@@ -231,13 +266,46 @@ AlfeldFactors alfeld_factors(int q)
   columns = qr.times_q(columns);
 
   AlfeldFactors result;
-  result.restriction = column_by_column(restriction.transpose());
   result.kernel = column_by_column(columns.leftCols(n - rank));
   result.lifting = column_by_column(columns.rightCols(data.cols()));
   result.smallest_pivot = triangle.diagonal().head(rank).cwiseAbs().minCoeff();
   if (n > rank)
     result.largest_rest =
         triangle.bottomRightCorner(n - rank, constraints.rows() - rank).cwiseAbs().maxCoeff();
+  return result;
+}
+
+}  // namespace
+
+// All rows but the rigid motions are independent.
+template <int dim>
+AlfeldFactors alfeld_factors(int q)
+{
+  const Pieces<dim> pieces(q);
+  const RowConstraints<dim> row_constraints(pieces, q);
+  const Eigen::MatrixXd restriction = restriction_to(pieces, q);
+  AlfeldFactors result =
+      solve_constraints(symmetric_constraints(row_constraints),
+                        of_skew_functions(row_constraints, restriction), dim * (dim + 1) / 2);
+  result.restriction = column_by_column(restriction.transpose());
+  return result;
+}
+
+// Besides the rigid motions one row at each end of the facet depends on the others: Lemma 21.
+AlfeldFactors alfeld_factors_without_stress_on(int facet, int q)
+{
+  const Pieces<2> pieces(q);
+  const RowConstraints<2> row_constraints(pieces, q);
+  const Eigen::MatrixXd restriction = restriction_to(pieces, q);
+  const Eigen::MatrixXd constraints = symmetric_constraints(row_constraints);
+  const Eigen::MatrixXd along = along_facet(pieces, q, facet);
+  Eigen::MatrixXd all(constraints.rows() + along.rows(), constraints.cols());
+  all << constraints, along;
+  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(all.rows(), pieces.n() - 1);
+  data.topRows(constraints.rows()) =
+      of_skew_functions(row_constraints, restriction).lazyProduct(projection_onto_vanishing(q, facet));
+  AlfeldFactors result = solve_constraints(all, data, 5);
+  result.restriction = column_by_column(restriction.transpose());
   return result;
 }
 
