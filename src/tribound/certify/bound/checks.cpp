@@ -83,6 +83,14 @@ double squared_divergence_defect(const contact::NitscheForm<dim>& form, Index ce
   return sum;
 }
 
+/// How many leading coefficients of the skew part vanish: Lambda is of degree q - 1, on cells with an edge on
+/// the axis of degree q - 2.
+template <int dim>
+int n_symmetric(const contact::NitscheForm<dim>& form, Index cell, const CheckTables<dim>& tables, int degree)
+{
+  return has_facet_on_axis(form, cell) ? fem::polynomial_dimension(dim, degree - 2) : tables.n_less;
+}
+
 /// Sums of squares over the cells, and the square of the norm of sigma_h.
 template <int dim>
 double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
@@ -93,7 +101,8 @@ double check_cells(const contact::NitscheForm<dim>& form, const Stress<dim>& str
   {
     const auto c = static_cast<Index>(cell);
     const CheckedStress<dim> sigma(mesh, stress, c);
-    return Eigen::Array3d(sigma.squared_norm(), sigma.squared_skew_part(tables.n_less),
+    return Eigen::Array3d(sigma.squared_norm(),
+                          sigma.squared_skew_part(n_symmetric(form, c, tables, stress.degree)),
                           std::pow(mesh::cell_diameter(mesh, c), 2) *
                               squared_divergence_defect(form, c, tables, sigma, mesh::cell_map(mesh, c),
                                                         rho.empty() ? nullptr : &rho[cell]));

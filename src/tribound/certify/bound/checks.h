@@ -23,7 +23,7 @@ struct IdentityDefects
   double jump = 0;           ///< (sum h_F ||[sigma_h n]||_F^2)^{1/2} over facets inside Omega
   double neumann = 0;        ///< (sum h_F ||sigma_h n - Pi^p_F g_N||_F^2)^{1/2}, free components only
   double contact = 0;        ///< (sum h_F ||sigma_h n - Pi^p_F t^k||_F^2)^{1/2}
-  double symmetry = 0;       ///< ||Pi^{p-1} skew sigma_h||
+  double symmetry = 0;       ///< ||Pi^{p-1} skew sigma_h||; of cells with an edge on the axis Pi^{p-2}
   bool is_symmetric = true;  ///< whether symmetry is one of the identities: Stress::is_symmetric()
 
   /// The largest of the defects that apply; nan if one of them is.

@@ -43,17 +43,19 @@ Equilibrator<dim>::Equilibrator(const contact::NitscheForm<dim>& form, PatchStre
   form.space().mesh().ranks().together(
       [&]
       {
+        const bool by_rows = kind == PatchStress::rows;
         if constexpr (dim == 2)
           if (form.problem().is_axisymmetric())
           {
-            implementation_ = make_meridian_equilibrator(form, n_threads);
+            implementation_ =
+                make_meridian_equilibrator(form, n_threads, by_rows, metrics_of(form.problem(), kind));
             return;
           }
         fem::with_degree(form.space().degree(),
                          [&](auto p)
                          {
-                           implementation_ = make_mesh_equilibrator<dim, p>(
-                               form, n_threads, kind == PatchStress::rows, metrics_of(form.problem(), kind));
+                           implementation_ = make_mesh_equilibrator<dim, p>(form, n_threads, by_rows,
+                                                                            metrics_of(form.problem(), kind));
                          });
       });
 }

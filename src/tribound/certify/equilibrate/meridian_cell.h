@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tribound/base/dense_factors.h"
+#include "tribound/certify/equilibrate/cell_operator.h"
 #include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/certify/equilibrate/sorted_cell.h"
 #include "tribound/contact/nitsche/nitsche.h"
@@ -29,10 +30,15 @@ struct MeridianCell
   /// The coefficients of the basis in which a row is sought, component by component; empty: they are the
   /// unknowns.
   Eigen::MatrixXd basis;
-  CholeskyFactors mass;  ///< L L^T: the products (., . / r) of one component
-  // Of vector fields in that basis, both components, times L^{-T}:
-  Eigen::MatrixXd divergence;            ///< in P^p
-  std::array<Eigen::MatrixXd, 3> trace;  ///< normal traces
+  /// L L^T: the products of the fields of a problem, row by row (., . / r) of one component, weakly symmetric
+  /// those of all four.
+  CholeskyFactors mass;
+  // Of the fields in that basis, all components, times L^{-T}:
+  Eigen::MatrixXd conditions;  ///< row by row the divergence in P^p; else WeakSymmetry::conditions()
+  /// [row of the problem][facet]: normal traces
+  std::array<std::array<Eigen::MatrixXd, 3>, 2> trace;
+  /// Weakly symmetric, [vertex]: WeakSymmetry::load() of psi_a.
+  std::array<Eigen::VectorXd, 3> load;
   /// The inverse of (r ., .) on P^p.
   Eigen::MatrixXd compliance;
   double radius_integral;                               ///< of r
@@ -42,7 +48,7 @@ struct MeridianCell
   std::array<Eigen::VectorXd, 2> residual;
   /// [row][vertex]: moments on P^p of psi_a r^2 f_r and of psi_a r f_z. On cells with an edge on the axis the
   /// latter are those of r w, w the projection with the weight r of psi_a f_z onto P^{p-1}: div tau_z can
-  /// then be divided by r.
+  /// then be divided by r. Less those of (K_{T,a} (x - x_T))_z.
   std::array<std::array<Eigen::VectorXd, 3>, 2> body;
 
   [[nodiscard]] bool is_on_axis(int facet) const
@@ -55,19 +61,32 @@ struct MeridianCell
 class MeridianCellSource
 {
  public:
-  /// The form must outlive the object.
-  explicit MeridianCellSource(const contact::NitscheForm<2>& form);
+  /// The form must outlive the object. `metrics`: of the regions; empty: L2 everywhere, as it is row by row.
+  explicit MeridianCellSource(const contact::NitscheForm<2>& form, bool by_rows = true,
+                              std::vector<StressMetric> metrics = {});
 
   [[nodiscard]] const MeridianReference& reference() const { return fields_.reference(); }
-  /// Throws SolveError for a cell without volume. Any number of threads may call it.
-  [[nodiscard]] MeridianCell prepare(Index c, std::span<const double> u) const;
+  [[nodiscard]] bool is_by_rows() const { return by_rows_; }
+  /// `turning`: K_{T,a} at the vertices, or empty. Throws SolveError for a cell without volume. Any number of
+  /// threads may call it.
+  [[nodiscard]] MeridianCell prepare(Index c, std::span<const double> u,
+                                     std::span<const Tensor<2>> turning = {}) const;
 
  private:
-  void find_operators(MeridianCell& cell, Index c, int permutation) const;
+  /// K_{T,a} (x - x_T) of the vertices in P^p, by component; 0 without.
+  using Turning = std::array<std::array<Eigen::VectorXd, 2>, 3>;
+  [[nodiscard]] Turning turning_in_cell(const SortedCell<2>& cell, std::span<const Tensor<2>> turning) const;
+  /// (., . / r) of one component.
+  [[nodiscard]] Eigen::MatrixXd products(const MeridianCell& cell, Index c, int permutation) const;
+  void find_row_operators(MeridianCell& cell, const Eigen::MatrixXd& products) const;
+  void find_symmetric_operators(MeridianCell& cell, Index c, const Eigen::MatrixXd& products,
+                                const Turning& turning) const;
   void find_stress(MeridianCell& cell, Index c, std::span<const double> u) const;
   void find_body_moments(MeridianCell& cell, Index c, int permutation) const;
 
   const contact::NitscheForm<2>& form_;
+  bool by_rows_;
+  std::vector<StressMetric> metrics_;
   MeridianFields fields_;
   fem::MeridianRules rules_;
   std::vector<PermutedTables> phi_;  ///< P^q at the points of each of them

@@ -25,12 +25,13 @@ class MeridianEquilibration
  public:
   MeridianEquilibration(const mesh::Mesh<2>& mesh, const MeridianCellSource& source,
                         const MeridianFacets& facets, const VertexPartition& partition,
-                        std::span<const double> u, bool with_dis)
+                        std::span<const double> u, std::span<const Tensor<2>> turning, bool with_dis)
       : mesh_(mesh),
         source_(source),
         facets_(facets),
         partition_(partition),
         u_(u),
+        turning_(turning),
         first_part_(with_dis ? 0 : 1)
   {
   }
@@ -58,6 +59,11 @@ class MeridianEquilibration
   {
     return part == 0 ? stress_.dis : part == 1 ? stress_.lin : stress_.reg;
   }
+  [[nodiscard]] MeridianCell prepare(Index cell) const
+  {
+    return source_.prepare(cell, u_,
+                           turning_.empty() ? turning_ : turning_.subspan(std::size_t{3} * cell, 3));
+  }
   /// The number of the cell among those that have the part.
   [[nodiscard]] std::size_t block(int part, Index cell) const
   {
@@ -76,6 +82,7 @@ class MeridianEquilibration
   const MeridianFacets& facets_;
   const VertexPartition& partition_;
   const std::span<const double> u_;
+  const std::span<const Tensor<2>> turning_;  ///< K_{T,a}, or empty
   const int first_part_;
   Stress<2> stress_;
   std::array<std::vector<double>, 3> shares_;  ///< of each part
@@ -85,7 +92,7 @@ void MeridianEquilibration::prepare_stress()
 {
   stress_.n = source_.reference().n_stress;
   stress_.degree = source_.reference().n_facet - 1;
-  stress_.patches = PatchStress::rows;
+  stress_.patches = source_.is_by_rows() ? PatchStress::rows : PatchStress::afw;
   stress_.lin_block.assign(mesh_.n_owned_cells(), -1);
   int n_lin = 0;
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
@@ -115,12 +122,13 @@ void MeridianEquilibration::solve_patches(int thread)
     cells.clear();
     for (const Index c : cells_around(v))
     {
-      if (!prepared[c]) prepared[c] = std::make_unique<MeridianCell>(source_.prepare(c, u_));
+      if (!prepared[c]) prepared[c] = std::make_unique<MeridianCell>(prepare(c));
       MeridianPatchCell& cell = cells.emplace_back(c, prepared[c].get());
       for (int part = first_part_; part < end_part; ++part)
         cell.stress[part] = share(part, c, prepared[c]->sorted.find(v));
     }
-    solve_meridian_patch(mesh_, source_.reference(), facets_, v, first_part_, end_part, cells);
+    solve_meridian_patch(mesh_, source_.reference(), facets_, v, first_part_, end_part, cells,
+                         source_.is_by_rows());
     for (const Index c : cells_around(v))
       if (--waiting[c] == 0) prepared[c].reset();
   }
@@ -143,15 +151,18 @@ void MeridianEquilibration::add_up()
 class MeridianEquilibrator : public Equilibrator<2>::Implementation
 {
  public:
-  MeridianEquilibrator(const contact::NitscheForm<2>& form, int n_threads)
-      : form_(form), source_(form), n_threads_(n_threads > 0 ? n_threads : max_threads())
+  MeridianEquilibrator(const contact::NitscheForm<2>& form, int n_threads, bool by_rows,
+                       std::vector<StressMetric> metrics)
+      : form_(form),
+        source_(form, by_rows, std::move(metrics)),
+        n_threads_(n_threads > 0 ? n_threads : max_threads())
   {
   }
 
   Stress<2> run(std::span<const double> u, Stress<2>::Tractions tractions, bool with_dis,
-                [[maybe_unused]] std::span<const Tensor<2>> turning) override
+                std::span<const Tensor<2>> turning) override
   {
-    assert(turning.empty());
+    assert(turning.empty() || !source_.is_by_rows());
     const mesh::Mesh<2>& mesh = form_.space().mesh();
     const MeridianFacets facets(form_, source_.reference(), std::move(tractions));
     std::optional<VertexPartition>& partition = with_dis ? all_ : on_contact_;
@@ -162,7 +173,7 @@ class MeridianEquilibrator : public Equilibrator<2>::Implementation
         if (mesh.has_patch(v) && (with_dis || facets.on_contact(v))) vertices.push_back(v);
       partition = partition_vertices(mesh, std::span<const Index>(vertices), n_threads_);
     }
-    Stress<2> stress = MeridianEquilibration(mesh, source_, facets, *partition, u, with_dis).run();
+    Stress<2> stress = MeridianEquilibration(mesh, source_, facets, *partition, u, turning, with_dis).run();
     stress.tractions = facets.tractions();
     return stress;
   }
@@ -178,9 +189,9 @@ class MeridianEquilibrator : public Equilibrator<2>::Implementation
 }  // namespace
 
 std::unique_ptr<Equilibrator<2>::Implementation> make_meridian_equilibrator(
-    const contact::NitscheForm<2>& form, int n_threads)
+    const contact::NitscheForm<2>& form, int n_threads, bool by_rows, std::vector<StressMetric> metrics)
 {
-  return std::make_unique<MeridianEquilibrator>(form, n_threads);
+  return std::make_unique<MeridianEquilibrator>(form, n_threads, by_rows, std::move(metrics));
 }
 
 }  // namespace tribound::certify

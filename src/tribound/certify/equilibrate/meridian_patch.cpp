@@ -13,13 +13,15 @@ namespace
 {
 
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-/// The problem of one row.
-class MeridianRow
+/// The problem of one row, or of both if they are weakly symmetric.
+class MeridianSystem
 {
  public:
-  MeridianRow(const mesh::Mesh<2>& mesh, const MeridianReference& reference, const MeridianFacets& facets,
-              Index vertex, int first_part, int end_part, std::span<const MeridianPatchCell> cells, int row)
+  MeridianSystem(const mesh::Mesh<2>& mesh, const MeridianReference& reference, const MeridianFacets& facets,
+                 Index vertex, int first_part, int end_part, std::span<const MeridianPatchCell> cells,
+                 int first_row, int end_row)
       : mesh_(mesh),
         reference_(reference),
         facets_(facets),
@@ -27,17 +29,19 @@ class MeridianRow
         first_part_(first_part),
         n_parts_(end_part - first_part),
         cells_(cells),
-        row_(row)
+        first_row_(first_row),
+        n_rows_(end_row - first_row)
   {
   }
 
   void solve();
 
  private:
-  /// A facet at the vertex whose normal trace is prescribed.
+  /// A facet at the vertex where the normal trace of a row is prescribed.
   struct Facet
   {
     Index number;
+    int row;
     double scale;  ///< |F|
     int first;     ///< of its multipliers
     int size;
@@ -50,37 +54,51 @@ class MeridianRow
     MatrixXd outer;                ///< L^{-1} N^T of the facets at the vertex
     CholeskyFactors factors;       ///< of (B, N) M^{-1} (B, N)^T + C
     MatrixXd coupling;             ///< their L^{-1} (B, N) M^{-1} N^T
-    MatrixXd load;                 ///< their L^{-1} (k, 0), a column for each part
+    MatrixXd load;                 ///< their L^{-1} ((k, 0) + (B, N) M^{-1} h), a column for each part
     std::vector<int> multipliers;  ///< of the facets at the vertex
   };
 
   void number_facets();
+  void number_facet(const MeridianPatchCell& cell, int f, int row);
   void make_compatible();
   [[nodiscard]] Eliminated eliminate(const MeridianPatchCell& cell) const;
-  [[nodiscard]] MatrixXd divergence_data(const MeridianCell& cell, int vertex) const;
+  [[nodiscard]] MatrixXd condition_data(const MeridianCell& cell, int vertex) const;
   void add_to_system(const MeridianPatchCell& cell, const Eliminated& eliminated);
   void add_tractions();
   void recover(const MeridianPatchCell& cell, const Eliminated& eliminated, const MatrixXd& mu) const;
 
-  [[nodiscard]] const Facet* find(Index facet) const
+  /// Calls visit(f, facet) for the facets f of a cell that have multipliers, row by row.
+  template <class Visit>
+  void for_each_facet(const MeridianPatchCell& cell, const Visit& visit) const
   {
-    const auto found = std::ranges::find(at_vertex_, facet, &Facet::number);
-    return found == at_vertex_.end() ? nullptr : &*found;
+    for (int f = 0; f < 3; ++f)
+      for (const Facet& at_vertex : at_vertex_)
+        if (at_vertex.number == facet(cell, f)) visit(f, at_vertex);
+  }
+  /// Moments of a normal trace of the cell.
+  [[nodiscard]] int trace_size(const MeridianCell& cell) const
+  {
+    return reference_.n_facet - (cell.has_edge_on_axis ? 1 : 0);
   }
   /// The facet opposite to a vertex of a cell.
   [[nodiscard]] Index facet(const MeridianPatchCell& cell, int opposite) const
   {
     return mesh_.topology().cell_facets[cell.cell][cell.prepared->sorted.local[opposite]];
   }
-  /// psi_a r sigma(u) in P^q, by component.
-  [[nodiscard]] MatrixXd target(const MeridianCell& cell, int vertex) const
+  /// A row of psi_a r sigma(u) in P^q, by component.
+  [[nodiscard]] MatrixXd target(const MeridianCell& cell, int vertex, int row) const
   {
     MatrixXd result(reference_.n_stress, 2);
-    for (int k = 0; k < 2; ++k) result.col(k) = reference_.hat[vertex] * cell.sigma[row_][k];
+    for (int k = 0; k < 2; ++k) result.col(k) = reference_.hat[vertex] * cell.sigma[row][k];
     return result;
   }
+  [[nodiscard]] bool is_by_rows() const { return n_rows_ == 1; }
+  /// Whether the divergence of the axial row is prescribed and its component fixed nowhere.
+  [[nodiscard]] bool must_balance() const { return first_row_ + n_rows_ == 2 && !is_fixed_; }
   /// Whether there is a part with u and f; it is the first one.
   [[nodiscard]] bool has_dis() const { return first_part_ == 0; }
+  /// Whether that has h.
+  [[nodiscard]] bool has_hoop_load() const { return has_dis() && !is_by_rows(); }
   [[nodiscard]] const MatrixXd* traction(const Facet& facet, int column) const
   {
     const int end = mesh_.topology().facets[facet.number][0] == vertex_ ? 0 : 1;
@@ -94,16 +112,17 @@ class MeridianRow
   const int first_part_;
   const int n_parts_;
   const std::span<const MeridianPatchCell> cells_;
-  const int row_;
+  const int first_row_;
+  const int n_rows_;
   std::vector<Facet> at_vertex_;
-  bool is_fixed_ = false;  ///< whether a facet at the vertex fixes the component
+  bool is_fixed_ = false;  ///< whether a facet at the vertex fixes the axial component
   int n_multipliers_ = 0;
   Eigen::RowVectorXd y_;
   MatrixXd matrix_;
   MatrixXd load_;
 };
 
-void MeridianRow::solve()
+void MeridianSystem::solve()
 {
   number_facets();
   make_compatible();
@@ -118,7 +137,9 @@ void MeridianRow::solve()
   add_tractions();
   // Multipliers that are the trace of a constant change nothing in the axial row: a term on one facet, which
   // the solution, the data being compatible, does not feel.
-  if (row_ == 1 && !is_fixed_) matrix_(0, 0) += matrix_.trace() / n_multipliers_;
+  if (const auto axial = std::ranges::find(at_vertex_, 1, &Facet::row);
+      must_balance() && axial != at_vertex_.end())
+    matrix_(axial->first, axial->first) += matrix_.trace() / n_multipliers_;
   MatrixXd mu(n_multipliers_, n_parts_);
   if (n_multipliers_ > 0)
   {
@@ -137,25 +158,14 @@ void MeridianRow::solve()
 
 /// Where all cells of a facet have an edge on the axis, normal traces are r P^p: their moments on P^p
 /// suffice.
-void MeridianRow::number_facets()
+void MeridianSystem::number_facets()
 {
   for (const MeridianPatchCell& cell : cells_)
     for (int f = 0; f < 3; ++f)
     {
       const MeridianCell& prepared = *cell.prepared;
-      const Index number = facet(cell, f);
       if (prepared.sorted.vertices[f] == vertex_ || prepared.is_on_axis(f)) continue;
-      if (facets_.fixes(number, row_))
-      {
-        is_fixed_ = true;
-        continue;
-      }
-      const auto found = std::ranges::find(at_vertex_, number, &Facet::number);
-      if (found == at_vertex_.end())
-        at_vertex_.push_back({number, prepared.sorted.facet_scale(f), 0,
-                              reference_.n_facet - (prepared.has_edge_on_axis ? 1 : 0)});
-      else if (!prepared.has_edge_on_axis)
-        found->size = reference_.n_facet;
+      for (int row = first_row_; row < first_row_ + n_rows_; ++row) number_facet(cell, f, row);
     }
   for (Facet& facet : at_vertex_)
   {
@@ -164,10 +174,27 @@ void MeridianRow::number_facets()
   }
 }
 
-void MeridianRow::make_compatible()
+void MeridianSystem::number_facet(const MeridianPatchCell& cell, int f, int row)
+{
+  const Index number = facet(cell, f);
+  if (facets_.fixes(number, row))
+  {
+    is_fixed_ = is_fixed_ || row == 1;
+    return;
+  }
+  const MeridianCell& prepared = *cell.prepared;
+  const auto found = std::ranges::find_if(
+      at_vertex_, [&](const Facet& facet) { return facet.number == number && facet.row == row; });
+  if (found == at_vertex_.end())
+    at_vertex_.push_back({number, row, prepared.sorted.facet_scale(f), 0, trace_size(prepared)});
+  else
+    found->size = std::max(found->size, trace_size(prepared));
+}
+
+void MeridianSystem::make_compatible()
 {
   y_ = Eigen::RowVectorXd::Zero(n_parts_);
-  if (row_ == 0 || is_fixed_) return;
+  if (!must_balance()) return;
   double integral = 0;
   for (const MeridianPatchCell& cell : cells_)
   {
@@ -181,58 +208,63 @@ void MeridianRow::make_compatible()
   }
   for (const Facet& facet : at_vertex_)
     for (int part = 0; part < n_parts_; ++part)
-      if (const MatrixXd* t = traction(facet, part)) y_[part] += std::sqrt(facet.scale) * (*t)(0, 1);
+      if (const MatrixXd* t = facet.row == 1 ? traction(facet, part) : nullptr)
+        y_[part] += std::sqrt(facet.scale) * (*t)(0, 1);
   y_ /= integral;
 }
 
 /// k, a column for each part.
-MatrixXd MeridianRow::divergence_data(const MeridianCell& cell, int vertex) const
+MatrixXd MeridianSystem::condition_data(const MeridianCell& cell, int vertex) const
 {
-  MatrixXd k = cell.radius_moment * y_;
+  const int m = reference_.n_divergence;
+  const int row = first_row_ + n_rows_ - 1;  // whose divergence is prescribed, or the radial one
+  MatrixXd k = MatrixXd::Zero(cell.conditions.cols(), n_parts_);
+  k.topRows(m) = cell.radius_moment * y_;
   if (!has_dis()) return k;
-  const Eigen::VectorXd moments =
-      reference_.hat[vertex].topRows(reference_.n_divergence) * cell.residual[row_] + cell.body[row_][vertex];
-  if (row_ == 0)
+  const VectorXd moments = reference_.hat[vertex].topRows(m) * cell.residual[row] + cell.body[row][vertex];
+  if (row == 0)
     k.col(0) -= cell.compliance * moments;
   else
-    k.col(0) -= moments;
+    k.col(0).head(m) -= moments;
   return k;
 }
 
-MeridianRow::Eliminated MeridianRow::eliminate(const MeridianPatchCell& cell) const
+MeridianSystem::Eliminated MeridianSystem::eliminate(const MeridianPatchCell& cell) const
 {
   const MeridianCell& prepared = *cell.prepared;
   const int o = prepared.sorted.find(vertex_);
-  const Eigen::Index n = prepared.divergence.rows();
-  const Eigen::Index m = prepared.divergence.cols();
-  const int n_rim = prepared.is_on_axis(o) ? 0 : reference_.n_facet - (prepared.has_edge_on_axis ? 1 : 0);
+  const Eigen::Index n = prepared.conditions.rows();
+  const Eigen::Index m = prepared.conditions.cols();
+  const int n_rim = prepared.is_on_axis(o) ? 0 : trace_size(prepared);
   Eliminated result;
-  result.local.resize(n, m + n_rim);
-  result.local.leftCols(m) = prepared.divergence;
-  if (n_rim > 0) result.local.rightCols(n_rim) = prepared.trace[o].leftCols(n_rim);
-  for (int f = 0; f < 3; ++f)
-  {
-    const Facet* const at_vertex = f == o ? nullptr : find(facet(cell, f));
-    if (at_vertex == nullptr) continue;
-    result.outer.conservativeResize(n, result.outer.cols() + at_vertex->size);
-    result.outer.rightCols(at_vertex->size) = prepared.trace[f].leftCols(at_vertex->size);
-    for (int i = 0; i < at_vertex->size; ++i) result.multipliers.push_back(at_vertex->first + i);
-  }
+  result.local.resize(n, m + n_rows_ * n_rim);
+  result.local.leftCols(m) = prepared.conditions;
+  for (int i = 0; i < n_rows_ && n_rim > 0; ++i)
+    result.local.middleCols(m + i * n_rim, n_rim) = prepared.trace[i][o].leftCols(n_rim);
+  for_each_facet(cell,
+                 [&](int f, const Facet& at_vertex)
+                 {
+                   result.outer.conservativeResize(n, result.outer.cols() + at_vertex.size);
+                   result.outer.rightCols(at_vertex.size) =
+                       prepared.trace[at_vertex.row - first_row_][f].leftCols(at_vertex.size);
+                   for (int i = 0; i < at_vertex.size; ++i) result.multipliers.push_back(at_vertex.first + i);
+                 });
   if (result.outer.size() == 0) result.outer.resize(n, 0);
   MatrixXd matrix = result.local.transpose() * result.local;
-  if (row_ == 0) matrix.topLeftCorner(m, m) += prepared.compliance;
+  if (is_by_rows() && first_row_ == 0) matrix.topLeftCorner(m, m) += prepared.compliance;
   result.factors = CholeskyFactors(matrix);
   if (!result.factors.is_definite())
     throw no_equilibrated_stress<2>(prepared.sorted.origin, slenderness(prepared.sorted));
   const MatrixXd products = result.local.transpose() * result.outer;
   result.coupling = solve_lower(result.factors.lower(), products);
-  MatrixXd data = MatrixXd::Zero(m + n_rim, n_parts_);
-  data.topRows(m) = divergence_data(prepared, o);
+  MatrixXd data = MatrixXd::Zero(result.local.cols(), n_parts_);
+  data.topRows(m) = condition_data(prepared, o);
+  if (has_hoop_load()) data.col(0) += result.local.transpose() * prepared.load[o];
   result.load = solve_lower(result.factors.lower(), data);
   return result;
 }
 
-void MeridianRow::add_to_system(const MeridianPatchCell& cell, const Eliminated& eliminated)
+void MeridianSystem::add_to_system(const MeridianPatchCell& cell, const Eliminated& eliminated)
 {
   const MatrixXd matrix =
       eliminated.outer.transpose() * eliminated.outer - eliminated.coupling.transpose() * eliminated.coupling;
@@ -246,27 +278,31 @@ void MeridianRow::add_to_system(const MeridianPatchCell& cell, const Eliminated&
   if (!has_dis()) return;
   const SortedCell<2>& sorted = cell.prepared->sorted;
   const int o = sorted.find(vertex_);
-  const MatrixXd target = this->target(*cell.prepared, o);
-  for (int f = 0; f < 3; ++f)
+  if (has_hoop_load())
   {
-    const Facet* const at_vertex = f == o ? nullptr : find(facet(cell, f));
-    if (at_vertex == nullptr) continue;
-    const Eigen::VectorXd trace =
-        reference_.trace[f] * (target * (-1 / std::sqrt(sorted.grad_norm[f]) * sorted.grad[f]));
-    load_.col(0).segment(at_vertex->first, at_vertex->size) += trace.head(at_vertex->size);
+    const VectorXd traces = eliminated.outer.transpose() * cell.prepared->load[o];
+    for (std::size_t i = 0; i < numbers.size(); ++i) load_(numbers[i], 0) -= traces[i];
   }
+  for_each_facet(cell,
+                 [&](int f, const Facet& at_vertex)
+                 {
+                   const VectorXd trace =
+                       reference_.trace[f] * (target(*cell.prepared, o, at_vertex.row) *
+                                              (-1 / std::sqrt(sorted.grad_norm[f]) * sorted.grad[f]));
+                   load_.col(0).segment(at_vertex.first, at_vertex.size) += trace.head(at_vertex.size);
+                 });
 }
 
-void MeridianRow::add_tractions()
+void MeridianSystem::add_tractions()
 {
   for (const Facet& facet : at_vertex_)
     for (int part = 0; part < n_parts_; ++part)
       if (const MatrixXd* t = traction(facet, part))
-        load_.col(part).segment(facet.first, facet.size) -= t->col(row_).head(facet.size);
+        load_.col(part).segment(facet.first, facet.size) -= t->col(facet.row).head(facet.size);
 }
 
-void MeridianRow::recover(const MeridianPatchCell& cell, const Eliminated& eliminated,
-                          const MatrixXd& mu) const
+void MeridianSystem::recover(const MeridianPatchCell& cell, const Eliminated& eliminated,
+                             const MatrixXd& mu) const
 {
   if (cell.stress[first_part_].empty()) return;
   const MeridianCell& prepared = *cell.prepared;
@@ -275,27 +311,35 @@ void MeridianRow::recover(const MeridianPatchCell& cell, const Eliminated& elimi
     at_cell.row(i) = mu.row(eliminated.multipliers[i]);
   const MatrixXd eta =
       solve_lower_transposed(eliminated.factors.lower(), eliminated.load + eliminated.coupling * at_cell);
-  const MatrixXd d = eliminated.local * eta - eliminated.outer * at_cell;
-  const Eigen::Index n = prepared.mass.lower().rows();
-  const MatrixXd target = this->target(prepared, prepared.sorted.find(vertex_));
+  MatrixXd d = eliminated.local * eta - eliminated.outer * at_cell;
+  const int o = prepared.sorted.find(vertex_);
+  if (has_hoop_load()) d.col(0) -= prepared.load[o];
+  const Eigen::Index n_fields = prepared.mass.lower().rows();  // of all components, or one
   for (int part = 0; part < n_parts_; ++part)
-    for (int k = 0; k < 2; ++k)
-    {
-      Eigen::VectorXd tau = solve_lower_transposed(prepared.mass.lower(), d.col(part).segment(k * n, n));
-      if (prepared.has_edge_on_axis) tau = prepared.basis * tau;
-      if (has_dis() && part == 0) tau += target.col(k);
-      std::ranges::copy(tau, &cell.stress[first_part_ + part][(2 * row_ + k) * reference_.n_stress]);
-    }
+  {
+    const MatrixXd x =
+        solve_lower_transposed(prepared.mass.lower(), d.col(part).reshaped(n_fields, d.rows() / n_fields));
+    MatrixXd tau = x.reshaped(d.rows() / (2 * n_rows_), 2 * n_rows_);  // component by component
+    if (prepared.has_edge_on_axis) tau = prepared.basis * tau;
+    for (int i = 0; i < n_rows_ && has_dis() && part == 0; ++i)
+      tau.middleCols(2 * i, 2) += target(prepared, o, first_row_ + i);
+    std::ranges::copy(tau.reshaped(), &cell.stress[first_part_ + part][2 * first_row_ * reference_.n_stress]);
+  }
 }
 
 }  // namespace
 
 void solve_meridian_patch(const mesh::Mesh<2>& mesh, const MeridianReference& reference,
                           const MeridianFacets& facets, Index vertex, int first_part, int end_part,
-                          std::span<const MeridianPatchCell> cells)
+                          std::span<const MeridianPatchCell> cells, bool by_rows)
 {
+  if (!by_rows)
+  {
+    MeridianSystem(mesh, reference, facets, vertex, first_part, end_part, cells, 0, 2).solve();
+    return;
+  }
   for (int row = 0; row < 2; ++row)
-    MeridianRow(mesh, reference, facets, vertex, first_part, end_part, cells, row).solve();
+    MeridianSystem(mesh, reference, facets, vertex, first_part, end_part, cells, row, row + 1).solve();
 }
 
 }  // namespace tribound::certify
