@@ -23,6 +23,7 @@ struct DualPair
   /// stress; absent: 0.
   std::optional<Stress<dim>> stress{};
   std::vector<double> target{};
+  const contact::NitscheForm<dim>* form = nullptr;  ///< whose loads zeta carries; for axisymmetric problems
   double oscillation = 0;  ///< ||O|| of the loads and springs that zeta does not carry, over all ranks
 };
 
@@ -33,7 +34,10 @@ struct DualProducts
   std::vector<double> square;  ///< ||zeta - sigma(z)||^2
   std::vector<double> work;    ///< (tau, sigma(z))
   std::vector<double> energy;  ///< ||sigma(z)||^2
-  double unbalanced = 0;       ///< largest part of the dual stress not balanced by a cell, of its norm there
+  /// How far 4 centre, square, 2 work and ||tau - sigma(v)||^2 may be off together, because of integrals over
+  /// 1/r. Empty unless the problem is axisymmetric.
+  std::vector<double> doubt{};
+  double unbalanced = 0;  ///< largest part of the dual stress not balanced by a cell, of its norm there
 };
 
 /// `stress` and v as for cell_distances(); stresses have the form's degree.

@@ -49,17 +49,16 @@ void set_energy(const BoundedState<dim>& state, bool is_homogeneous, QuantityInt
   const DualSums sums(products, ranks);
   const double quarter = bound.gap - bound.mid * bound.mid - bound.springs / 4;  // ||tau - sigma(v)||^2 / 4
   const double of_mean = sums.square + 2 * sums.centre + quarter;                // ||(tau + sigma(v))/2||^2
-  const double size = std::sqrt(std::max(0.0, of_mean));
-  double lower = std::pow(std::max(0.0, size - bound.mid), 2);
-  double upper = std::pow(size + bound.mid, 2);
+  double lower = std::pow(std::max(0.0, std::sqrt(std::max(0.0, of_mean - sums.doubt)) - bound.mid), 2);
+  double upper = std::pow(std::sqrt(std::max(0.0, of_mean + sums.doubt)) + bound.mid, 2);
   interval.basis = "energy bound";
   if (is_homogeneous)
   {
     const double of_tau =
         sums.square + 4 * sums.centre + 4 * quarter + 2 * state.remainder(pair.z, sums.work);
-    const double of_loads = 2 * state.unresolved * std::sqrt(sums.energy);
+    const double off = 2 * state.unresolved * std::sqrt(sums.energy) + sums.doubt;
     const double beyond = 2 * bound.oscillation * bound.b_v;
-    intersect(lower, upper, of_tau - 2 * bound.gap - of_loads, of_tau + beyond + of_loads);
+    intersect(lower, upper, of_tau - 2 * bound.gap - off, of_tau + beyond + off);
     interval.basis = "duality gap";
   }
   constexpr double unit = 1e-13;

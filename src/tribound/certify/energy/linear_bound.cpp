@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "tribound/certify/energy/meridian_distances.h"
 #include "tribound/fem/degree.h"
 
 namespace tribound::certify
@@ -48,6 +49,9 @@ std::vector<double> BoundedState<dim>::shares(double half_width) const
 template <int dim>
 DualProducts products_of_stresses(const BoundedState<dim>& state, const DualPair<dim>& pair)
 {
+  if constexpr (dim == 2)
+    if (state.form.problem().is_axisymmetric())
+      return meridian_products(state.form, state.stress, state.v, pair);
   DualProducts result;
   constexpr int lowest = 2;
   fem::with_degree<lowest>(state.form.space().degree(), [&](auto q)
@@ -80,7 +84,7 @@ DualProducts dual_products(const BoundedState<dim>& state, const DualPair<dim>& 
 
 DualSums::DualSums(const DualProducts& products, const Ranks& ranks)
 {
-  std::array<double, 5> sums{};
+  std::array<double, 6> sums{};
   for (std::size_t k = 0; k < products.centre.size(); ++k)
   {
     sums[0] += products.centre[k];
@@ -89,12 +93,14 @@ DualSums::DualSums(const DualProducts& products, const Ranks& ranks)
     sums[3] += products.energy[k];
     sums[4] += std::abs(products.centre[k]) + std::abs(products.work[k]);
   }
+  for (const double x : products.doubt) sums[5] += x;
   ranks.sum(std::span(sums));
   centre = sums[0];
   square = sums[1];
   work = sums[2];
   energy = sums[3];
   absolute = sums[4];
+  doubt = sums[5];
 }
 
 template <int dim>
@@ -108,7 +114,8 @@ LinearBound linear_bound(const BoundedState<dim>& state, double base, const Dual
   constexpr double unit = 1e-13;
   LinearBound result{.centre = base + sums.centre + state.remainder(pair.z, sums.work),
                      .radius = (is_second_order ? m * mid * mid + sums.square / (4 * m) : eta * mid) +
-                               state.unresolved * std::sqrt(sums.energy) + pair.oscillation * state.bound.b_v,
+                               state.unresolved * std::sqrt(sums.energy) +
+                               pair.oscillation * state.bound.b_v + sums.doubt,
                      .rounding = unit * (std::abs(base) + sums.absolute)};
   if (!is_second_order)
     result.cells = state.shares(result.radius);

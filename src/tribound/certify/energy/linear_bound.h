@@ -59,6 +59,7 @@ struct DualSums
   double work = 0;
   double energy = 0;
   double absolute = 0;  ///< of the terms of centre and work: rounding is proportional to it
+  double doubt = 0;
 
   DualSums(const DualProducts& products, const Ranks& ranks);
 };

@@ -249,6 +249,7 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
   const std::vector<double> load = dual.load(t);
   DualPair<dim> result{.z = systems_.solve(OnContact::held, load, trace(number, natural), near)};
   if (!fits(number, natural, result.z)) reason = "a dual displacement does not fit at the contact boundary";
+  result.form = &dual.form();
   result.target.assign(space.n_dofs(), 0.0);
   if (space.norm(load) > 0)
   {

@@ -1,0 +1,169 @@
+/// @file meridian_distances_test.cpp
+/// Distances and products of the stresses of bodies of revolution, with stresses that are known.
+
+#include "tribound/certify/energy/meridian_distances.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "tribound/base/norm.h"
+#include "tribound/certify/equilibrate/meridian_fields.h"
+#include "tribound/contact/nitsche/elasticity.h"
+#include "unit/certify/meridian_testing.h"
+
+namespace tribound::test
+{
+
+namespace
+{
+
+/// u_r = a r + b r z + c r^2, u_z = d z + e r^2 + k z^2 (p = 1: b = c = e = k = 0) with its body force.
+class ExactStress
+{
+ public:
+  ExactStress(Axis axis, int degree, const problem::Material& material)
+      : quadratic_(degree > 1 ? 1 : 0),
+        problem_(skew_mesh(axis, 3), data(material), {.degree = degree}),
+        fields_(problem_.form),
+        u_(interpolate<2>(problem_.space, [&](const Point<2>& x) { return displacement(x); }))
+  {
+    certify::Stress<2>& stress = stress_;
+    stress.degree = degree + 1;
+    stress.n = fem::polynomial_dimension(2, stress.degree);
+    stress.dis.assign(problem_.mesh.n_owned_cells() * stress.block_size(), 0.0);
+    for (Index k = 0; k < problem_.mesh.n_owned_cells(); ++k)
+    {
+      const auto exact = fields_.stress(k, certify::make_sorted_cell(problem_.mesh, k), u_);
+      for (int r = 0; r < 2; ++r)
+        for (int c = 0; c < 2; ++c)
+          std::ranges::copy(
+              exact.plane[r][c],
+              &stress.dis[k * stress.block_size() + static_cast<std::size_t>((2 * r + c) * stress.n)]);
+    }
+  }
+
+  [[nodiscard]] const contact::NitscheForm<2>& form() const { return problem_.form; }
+  [[nodiscard]] const std::vector<double>& u() const { return u_; }
+  [[nodiscard]] const certify::Stress<2>& stress() const { return stress_; }
+  [[nodiscard]] std::vector<double> any(unsigned seed) const { return any_displacement(problem_, seed); }
+  /// a(x, y)
+  [[nodiscard]] double work(std::span<const double> x, std::span<const double> y) const
+  {
+    return tribound::inner_product(contact::apply_stiffness<2>(problem_.problem, problem_.space, x), y);
+  }
+
+ private:
+  [[nodiscard]] Point<2> displacement(const Point<2>& x) const
+  {
+    const double r = x[0];
+    const double z = x[1];
+    return {0.3 * r + quadratic_ * (0.2 * r * z - 0.4 * r * r),
+            -0.1 * z + quadratic_ * (0.5 * r * r + 0.3 * z * z)};
+  }
+  [[nodiscard]] ProblemData<2> data(const problem::Material& material) const
+  {
+    const double mu = material.mu;
+    const double lambda = material.lambda;
+    return {.boundaries = {obstacle<2>("bottom")},
+            .material = material,
+            .body_force = {problem::Field(quadratic_ * 0.4 * (3 * lambda + 6 * mu)),
+                           problem::Field(-quadratic_ * (lambda * (2 * 0.2 + 2 * 0.3) +
+                                                         mu * (2 * 0.2 + 4 * 0.5 + 4 * 0.3)))}};
+  }
+
+  double quadratic_;
+  MeridianProblem problem_;
+  certify::MeridianFields fields_;
+  std::vector<double> u_;
+  certify::Stress<2> stress_;
+};
+
+double total(const std::vector<double>& of_cells)
+{
+  return std::accumulate(of_cells.begin(), of_cells.end(), 0.0);
+}
+
+class MeridianDistances : public ::testing::TestWithParam<std::tuple<Axis, int>>
+{
+ protected:
+  /// check(exact) for materials up to nearly incompressible ones.
+  template <class Check>
+  static void check_all(const Check& check)
+  {
+    for (const double nu : {0.0, 0.3, 0.49})
+    {
+      SCOPED_TRACE(nu);
+      check(ExactStress(std::get<0>(GetParam()), std::get<1>(GetParam()), lame(1, nu)));
+    }
+  }
+};
+
+TEST_P(MeridianDistances, VanishForTheExactStress)
+{
+  check_all(
+      [](const ExactStress& exact)
+      {
+        const auto distances =
+            certify::meridian_distances(exact.form(), exact.stress(), exact.u(), exact.u());
+        const double size = exact.work(exact.u(), exact.u());
+        EXPECT_LE(total(distances.square), 1e-22 * size);
+        EXPECT_LE(total(distances.to_discrete), 1e-22 * size);
+        EXPECT_EQ(total(distances.correction), 0);
+        EXPECT_LE(distances.unbalanced, 1e-13);
+      });
+}
+
+TEST_P(MeridianDistances, AreThoseOfProducts)
+{
+  check_all(
+      [](const ExactStress& exact)
+      {
+        const std::vector<double> c = exact.any(3);
+        const std::vector<double> v = sum(exact.u(), -1, c);
+        const auto distances = certify::meridian_distances(exact.form(), exact.stress(), exact.u(), v);
+        const double square = exact.work(c, c);
+        EXPECT_NEAR(total(distances.correction), square, 1e-12 * square);
+        EXPECT_LE(total(distances.square), (1 + 1e-12) * square);  // sigma(u) is as far away
+
+        const certify::DualPair<2> pair{.z = c};
+        const auto products = certify::meridian_products(exact.form(), exact.stress(), v, pair);
+        EXPECT_NEAR(total(products.square), square, 1e-12 * square);
+        EXPECT_NEAR(total(products.energy), square, 1e-12 * square);
+        EXPECT_NEAR(total(distances.to_discrete),
+                    total(distances.square) / 4 - 2 * total(products.centre) + square, 1e-11 * square);
+        // the weak form: tau has the tractions and the loads of sigma(u)
+        EXPECT_NEAR(total(products.work), exact.work(exact.u(), c), 1e-11 * square);
+        EXPECT_LE(total(products.doubt), 1e-12 * square);
+      });
+}
+
+TEST_P(MeridianDistances, DualStressesCarryLoadsToo)
+{
+  check_all(
+      [](const ExactStress& exact)
+      {
+        const std::vector<double> v = sum(exact.u(), 1, exact.any(5));
+        const auto distances = certify::meridian_distances(exact.form(), exact.stress(), exact.u(), v);
+        certify::DualPair<2> pair{.z = v, .stress = exact.stress(), .target = v, .form = &exact.form()};
+        const auto products = certify::meridian_products(exact.form(), exact.stress(), v, pair);
+        const double square = total(distances.square);
+        const double of_v = exact.work(v, v);
+        EXPECT_NEAR(total(products.square), square, 1e-12 * of_v);
+        EXPECT_EQ(products.unbalanced, distances.unbalanced);
+        // (tau + sigma(v), tau - sigma(v)) / 2 with ||tau||^2 = ||tau - sigma(v)||^2 + 2 (tau, sigma(v)) -
+        // ...
+        EXPECT_NEAR(total(products.centre), square / 2 + total(products.work) - of_v, 1e-11 * of_v);
+      });
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, MeridianDistances,
+                         ::testing::Combine(::testing::Values(Axis::none, Axis::vertex, Axis::edges),
+                                            ::testing::Range(1, 4)));
+
+}  // namespace
+
+}  // namespace tribound::test
