@@ -41,6 +41,23 @@ fem::Tabulation<2> tabulate_stress(int degree, const std::array<int, 3>& local,
 
 }  // namespace
 
+std::vector<Point<2>> body_force_at(const contact::NitscheForm<2>& form, Index cell,
+                                    std::span<const Point<2>> points)
+{
+  std::vector<Point<2>> values(points.size(), Point<2>::Zero());
+  if (!form.data().has_body_force(cell)) return values;
+  const std::vector<Point<2>> coefficients = form.data().body_polynomial(cell);
+  std::vector<double> theta(coefficients.size());
+  int degree = 0;
+  while (fem::polynomial_dimension(2, degree) < static_cast<int>(theta.size())) ++degree;
+  for (std::size_t q = 0; q < points.size(); ++q)
+  {
+    fem::orthonormal_values<2>(degree, points[q], theta);
+    for (std::size_t j = 0; j < theta.size(); ++j) values[q] += theta[j] * coefficients[j];
+  }
+  return values;
+}
+
 MeridianTerms::MeridianTerms(const contact::NitscheForm<2>& form)
     : form_(form), rules_(form.space().mesh(), degree_of_squares(form))
 {
@@ -79,23 +96,6 @@ auto MeridianTerms::rows_at(const Table& table, const SortedCell<2>& cell, std::
   return rows;
 }
 
-std::vector<Point<2>> MeridianTerms::body_force(Index cell) const
-{
-  const std::vector<Point<2>>& points = rules_.of_cell(cell).points;
-  std::vector<Point<2>> values(points.size(), Point<2>::Zero());
-  if (!form_.data().has_body_force(cell)) return values;
-  const std::vector<Point<2>> coefficients = form_.data().body_polynomial(cell);
-  std::vector<double> theta(coefficients.size());
-  int degree = 0;
-  while (fem::polynomial_dimension(2, degree) < static_cast<int>(theta.size())) ++degree;
-  for (std::size_t q = 0; q < points.size(); ++q)
-  {
-    fem::orthonormal_values<2>(degree, points[q], theta);
-    for (std::size_t j = 0; j < theta.size(); ++j) values[q] += theta[j] * coefficients[j];
-  }
-  return values;
-}
-
 void MeridianTerms::add(Index cell, std::span<const double> u, const Stress<2>& stress, double rho_z,
                         BoundComponents& eta) const
 {
@@ -106,7 +106,7 @@ void MeridianTerms::add(Index cell, std::span<const double> u, const Stress<2>& 
   const mesh::CellMap<2> map = mesh::cell_map(space.mesh(), cell);
   const SortedCell<2> sorted = make_sorted_cell(space.mesh(), cell);
   const std::span<const Index> nodes = space.cell_nodes(cell);
-  const std::vector<Point<2>> force = body_force(cell);
+  const std::vector<Point<2>> force = body_force_at(form_, cell, rule.points);
   double in_plane = 0;
   double hoop = 0;
   double oscillation = 0;

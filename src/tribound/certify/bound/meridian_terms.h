@@ -15,6 +15,10 @@
 namespace tribound::certify
 {
 
+/// f_h of an axisymmetric problem at points of a cell, given in reference coordinates.
+[[nodiscard]] std::vector<Point<2>> body_force_at(const contact::NitscheForm<2>& form, Index cell,
+                                                  std::span<const Point<2>> points);
+
 /// With the rows tau = r sigma_h of the stress, s_tt = div tau_r + r f_{h,r} of tau_dis, h = u_r / r,
 ///     osc = (h_T / pi) ||r^{-1/2} (r f_{h,z} + div tau_z - r rho_z)||, tau = tau_dis + tau_lin + tau_reg,
 ///     str^2 = ||r^{-1/2} (tau_dis - r sigma(u))||^2 + ||r^{1/2} (s_tt - sigma_tt(u))||^2,
@@ -50,9 +54,6 @@ class MeridianTerms
 
   [[nodiscard]] Rows rows_at(const Table& table, const SortedCell<2>& cell, std::span<const double> block,
                              int q) const;
-  /// f_h at the points of the rule of a cell.
-  [[nodiscard]] std::vector<Point<2>> body_force(Index cell) const;
-
   const contact::NitscheForm<2>& form_;
   fem::MeridianRules rules_;
   std::vector<Table> tables_;  ///< of each rule

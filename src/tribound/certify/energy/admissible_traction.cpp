@@ -127,28 +127,37 @@ class SlipIntegral
 template <int dim>
 struct ContactGap<dim>::Tables
 {
-  /// For slips and gaps of the degree.
+  /// For slips and gaps of the degree, and for thresholds, times r on a meridian, of the same degree.
   struct OfSlip
   {
     OfSlip(const contact::NitscheForm<dim>& form, int degree)
-        : at_points(bernstein_at<dim>(degree, form.facet_rule().points)),
-          raise(bernstein_raised<dim>(form.space().degree(), degree)),
+        : nodes(fem::LagrangeBasis<dim - 1>(degree).node_points()),
+          at_points(bernstein_at<dim>(degree, form.facet_rule().points)),
+          at_nodes(bernstein_at<dim>(form.space().degree(), nodes)),
+          from_nodes(bernstein_from_nodes(fem::LagrangeBasis<dim - 1>(degree))),
+          raise(from_nodes * at_nodes),
           integral(degree)
     {
     }
 
+    std::vector<Point<dim - 1>> nodes;
     Matrix at_points;
-    Matrix raise;  ///< of thresholds
+    Matrix at_nodes;  ///< from coefficients of the degree of the space
+    Matrix from_nodes;
+    Matrix raise;  ///< from coefficients of the degree of the space
     SlipIntegral<dim> integral;
   };
 
   explicit Tables(const contact::NitscheForm<dim>& form)
-      : plain(form, form.space().degree()), rich(form, form.space().degree() + 2)
+      : plain(form, form.space().degree() + (form.problem().is_axisymmetric() ? 1 : 0)),
+        rich(form, form.space().degree() + 2),
+        gap_at_points(bernstein_at<dim>(form.space().degree(), form.facet_rule().points))
   {
   }
 
   OfSlip plain;
   OfSlip rich;
+  Matrix gap_at_points;  ///< coefficients of the degree of the space
 };
 
 template <int dim>
@@ -165,7 +174,8 @@ double ContactGap<dim>::operator()(std::size_t k, const AdmissibleTraction<dim>&
                                    std::span<const double> v) const
 {
   const fem::Quadrature<dim - 1>& rule = form_.facet_rule();
-  const Matrix& at_points = tables_->plain.at_points;
+  const problem::Problem<dim>& problem = form_.problem();
+  const Matrix& at_points = tables_->gap_at_points;
   const Eigen::Index n = at_points.cols();
   const Point<dim>& normal = facets_.frames().normal(k);
   const std::vector<Point<dim>> coefficients = facets_.turned(k, facets_.coefficients(k, v));
@@ -176,17 +186,30 @@ double ContactGap<dim>::operator()(std::size_t k, const AdmissibleTraction<dim>&
   const typename Tables::OfSlip& of_slip = facets_.slip_is_rich(k) ? tables_->rich : tables_->plain;
   const std::vector<Point<dim>> slip = facets_.slip(k, v);
   using Columns = typename SlipIntegral<dim>::Columns;
-  const Eigen::Map<const Columns> slips(slip[0].data(), dim, std::ssize(slip));
+  Columns slips = Eigen::Map<const Columns>(slip[0].data(), dim, std::ssize(slip));
+  if (slips.cols() < of_slip.at_points.cols()) slips = (slips * of_slip.raise.transpose()).eval();
   const Eigen::Map<const Columns> y(t.coefficients[k * n].data(), dim, n);
   const Eigen::Map<const Eigen::VectorXd> thresholds(&t.thresholds[k * n], n);
+  const auto map = contact::simplex_map(form_.space().mesh(), form_.segments()[k].slave);
   double sum = 0;
   for (int q = 0; q < rule.size(); ++q)
   {
     const Point<dim> y_there = y * at_points.row(q).transpose();
     const Point<dim> slip_there = slips * of_slip.at_points.row(q).transpose();
-    sum += rule.weights[q] * (y_there.dot(normal) * of_gap.row(q).dot(normal_gap) + y_there.dot(slip_there));
+    sum += rule.weights[q] * problem.weight(map(rule.points[q])) *
+           (y_there.dot(normal) * of_gap.row(q).dot(normal_gap) + y_there.dot(slip_there));
   }
-  if (thresholds.maxCoeff() > 0) sum += of_slip.integral(of_slip.raise * thresholds, slips);
+  if (thresholds.maxCoeff() > 0)
+  {
+    Eigen::VectorXd s = of_slip.raise * thresholds;
+    if (problem.is_axisymmetric())
+    {
+      s = of_slip.at_nodes * thresholds;
+      for (Eigen::Index i = 0; i < s.size(); ++i) s[i] *= problem.weight(map(of_slip.nodes[i]));
+      s = (of_slip.from_nodes * s).eval();
+    }
+    sum += of_slip.integral(s, slips);
+  }
   return std::max(0.0, form_.segments()[k].det() * sum);
 }
 

@@ -35,7 +35,7 @@ template <int dim>
 
 /// An upper bound of what is missing in complementarity and slip on facet k:
 ///     G_F = int_F (t_h^n (v^n - g_h) + s_h |v^t - w| + t_h^t . (v^t - w)) >= 0   for v admissible for g_h,
-/// w the slip before this load step. Keeps references.
+/// w the slip before this load step; with the weight r on a meridian. Keeps references.
 template <int dim>
 class ContactGap
 {

@@ -59,7 +59,8 @@ class BalanceConditions
 
   [[nodiscard]] Eigen::Index n() const { return static_cast<Eigen::Index>(motions_.size()); }
   using Columns = typename TractionFit<dim>::Columns;
-  /// [z_i] at the contact points of a segment.
+  /// [z_i] at the contact points of a segment; r [z_i] on a meridian, so that its product in the plane with a
+  /// traction is the work of that.
   struct Jump
   {
     int motion;
@@ -98,7 +99,11 @@ auto BalanceConditions<dim>::jumps(std::size_t k) const -> std::vector<Jump>
     for (int i = begin; i < end; ++i)
     {
       Columns& values = result.emplace_back(Jump{i, Columns(dim, rule.size())}).values;
-      for (int q = 0; q < rule.size(); ++q) values.col(q) = side.sign * motions_(i, map(rule.points[q]));
+      for (int q = 0; q < rule.size(); ++q)
+      {
+        const Point<dim> x = map(rule.points[q]);
+        values.col(q) = side.sign * form_.problem().weight(x) * motions_(i, x);
+      }
     }
   };
   form_.segments()[k].for_each_side(add_side);
@@ -128,7 +133,9 @@ auto BalanceConditions<dim>::at(Vector lambda) const -> State
     for (const auto& [i, values] : jumps(k))
       for (int q = 0; q < form_.n_segment_points(); ++q)
         add_work(i, values.col(q),
-                 form_.contact_points(k)[q].weight * t_h.at_points[k * form_.n_segment_points() + q], sums);
+                 form_.segments()[k].det() * form_.facet_rule().weights[q] *
+                     t_h.at_points[k * form_.n_segment_points() + q],
+                 sums);
   form_.space().mesh().ranks().sum(std::span(sums.data(), sums.size()));
   return {std::move(lambda), std::move(t_h), sums.head(n()), sums.tail(n())};
 }

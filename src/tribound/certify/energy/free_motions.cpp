@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/contact/support/holds.h"
@@ -64,6 +65,17 @@ std::vector<double> fixed_grams(const problem::Problem<dim>& problem, const mesh
   return grams;
 }
 
+/// The modes that have no strain: all of a plane or solid body, of a body of revolution the translation along
+/// its axis.
+template <int dim>
+std::vector<int> rigid_modes(const problem::Problem<dim>& problem)
+{
+  if (problem.is_axisymmetric()) return {1};
+  std::vector<int> all(n_modes<dim>);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 }  // namespace
 
 template <int dim>
@@ -75,17 +87,19 @@ FreeMotions<dim>::FreeMotions(const problem::Problem<dim>& problem, const mesh::
   constexpr double held = 1e-10;      // motions with larger eigenvalues are stopped
   const std::vector<Modes> modes = modes_of(mesh, bodies_);
   const std::vector<double> grams = fixed_grams<dim>(problem, mesh, bodies_, modes);
+  const std::vector<int> rigid = rigid_modes(problem);
   begin_.push_back(0);
   for (int b = 0; b < bodies_.n; ++b)
   {
     const Eigen::Map<const Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(b) * n * n]);
-    const SymmetricEigen eigen = symmetric_eigen(gram);
-    const double largest = eigen.values[n - 1];
-    for (int i = 0; i < n && eigen.values[i] <= held * largest; ++i)
+    const SymmetricEigen eigen = symmetric_eigen(gram(rigid, rigid));
+    const double largest = eigen.values[std::ssize(rigid) - 1];
+    for (Eigen::Index i = 0; i < std::ssize(rigid) && eigen.values[i] <= held * largest; ++i)
     {
       is_unclear_ = is_unclear_ || eigen.values[i] > rounding * largest;
       modes_.push_back(modes[b]);
-      motions_.push_back(eigen.vectors.col(i));
+      motions_.push_back(Modes::Coefficients::Zero());
+      motions_.back()(rigid) = eigen.vectors.col(i);
     }
     begin_.push_back(static_cast<int>(motions_.size()));
   }

@@ -5,6 +5,7 @@
 /// energy bound, method sections 13.3 and 13.5.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tribound/certify/bound/contact_terms.h"
@@ -19,9 +20,14 @@ struct LoadOscillation
 {
   std::vector<double> cells;  ///< O_T of the own cells
   double missed = 0;          ///< what quadrature may miss of the loads, of all ranks; infinite if K is
+  std::string reason{};       ///< why it is not bounded, the same on all ranks; empty: it is
 };
 
-/// `korn` is K of certify/bound/korn.h. All ranks together.
+/// The largest s with s |eps|^2 <= C eps : eps, eps with the hoop strain on a meridian.
+template <int dim>
+[[nodiscard]] double least_stiffness(const contact::NitscheForm<dim>& form, Index cell);
+
+/// `korn` is K of certify/bound/korn.h. On a meridian as meridian_oscillation.h has it. All ranks together.
 template <int dim>
 [[nodiscard]] LoadOscillation load_oscillation(const contact::NitscheForm<dim>& form,
                                                std::span<const double> u, double korn);
