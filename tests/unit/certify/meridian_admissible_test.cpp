@@ -213,7 +213,7 @@ class MeridianAdmissible : public ::testing::Test
 };
 
 using Degrees = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
-                                 std::integral_constant<int, 4>>;
+                                 std::integral_constant<int, 4>, std::integral_constant<int, 5>>;
 TYPED_TEST_SUITE(MeridianAdmissible, Degrees);
 
 TYPED_TEST(MeridianAdmissible, IsAdmissible)
@@ -268,8 +268,8 @@ TYPED_TEST(MeridianAdmissible, NoVariationIsNearer)
       [&](const MeridianCase<q>& c)
       {
         const Eigen::MatrixXd kernel = c.kernel();
-        constexpr std::array on_axis = {2, 7, 15};
-        constexpr std::array off_axis = {3, 9, 18};
+        constexpr std::array on_axis = {2, 7, 15, 26};
+        constexpr std::array off_axis = {3, 9, 18, 30};
         ASSERT_EQ(kernel.cols(), (has_edge_on_axis(c.cell.corners) ? on_axis : off_axis)[q - 2]);
         const double square = c.metric.square(c.result.difference);
         for (int k = 0; k < kernel.cols(); ++k)
@@ -335,7 +335,7 @@ TYPED_TEST(MeridianAdmissible, IsNoFartherThanASymmetricStress)
 TYPED_TEST(MeridianAdmissible, ConstraintsHaveAClearRank)
 {
   constexpr int q = TestFixture::q;
-  constexpr std::array kernels = {2, 7, 15};
+  constexpr std::array kernels = {2, 7, 15, 26};
   for (int facet = 0; facet < 3; ++facet)
   {
     const certify::AlfeldFactors factors = certify::alfeld_factors_without_stress_on(facet, q);

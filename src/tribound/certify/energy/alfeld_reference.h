@@ -33,8 +33,8 @@ template <int dim>
 [[nodiscard]] AlfeldFactors alfeld_factors(int q);
 
 /// The same on the triangle for stresses that vanish on one facet of the cell, opposite to the vertex of this
-/// number: the kernel has 3, 9, 18 dimensions less 1, 2, 3 for q = 2, 3, 4. Functions phi_j of the lifting
-/// are projected onto those of mean 0 that vanish on the facet.
+/// number, q >= 2: the kernel has q - 1 dimensions less. Functions phi_j of the lifting are projected onto
+/// those of mean 0 that vanish on the facet.
 [[nodiscard]] AlfeldFactors alfeld_factors_without_stress_on(int facet, int q);
 
 /// The same in the layout of the kernels, with products of the basis of the kernel.
