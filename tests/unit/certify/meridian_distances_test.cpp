@@ -13,7 +13,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/contact/nitsche/elasticity.h"
-#include "unit/certify/meridian_testing.h"
+#include "unit/certify/weak_symmetry_testing.h"
 
 namespace tribound::test
 {
@@ -163,6 +163,62 @@ TEST_P(MeridianDistances, DualStressesCarryLoadsToo)
 INSTANTIATE_TEST_SUITE_P(Meshes, MeridianDistances,
                          ::testing::Combine(::testing::Values(Axis::none, Axis::vertex, Axis::edges),
                                             ::testing::Range(1, 5)));
+
+/// A rectangle of height 1 between two radii, held at the top, without contact tractions.
+class HeldRing
+{
+ public:
+  HeldRing(double inner, double outer, int n, int degree)
+      : problem_(mapped(random_meridian(inner > 0 ? 0.5 : 0, n, 3),
+                        [=](const Point<2>& x) -> Point<2>
+                        {
+                          if (inner == 0) return {outer * x[0], x[1]};
+                          return {inner + (outer - inner) * (2 * x[0] - 1), x[1]};
+                        }),
+                 {.boundaries = {clamped<2>("top"), loaded<2>("right", 0.03, 0.02), obstacle<2>("bottom")},
+                  .body_force = {problem::Field(0.1), problem::Field(-0.2)}},
+                 {.degree = degree}),
+        state_(in_equilibrium(problem_,
+                              std::vector<Point<2>>(problem_.form.n_contact_points(), Point<2>::Zero())))
+  {
+  }
+
+  /// a(u, u)
+  [[nodiscard]] double energy() const
+  {
+    return tribound::inner_product(contact::apply_stiffness<2>(problem_.problem, problem_.space, state_.u),
+                                   state_.u);
+  }
+  /// The square of the distance of the stress of u from an admissible one.
+  [[nodiscard]] double square() const
+  {
+    return total(
+        certify::meridian_distances(problem_.form, weakly_symmetric(problem_, state_), state_.u, state_.u)
+            .square);
+  }
+
+ private:
+  MeridianProblem problem_;
+  Equilibrium state_;
+};
+
+/// On the axis and off it: without contact the distance bounds the error, of which it is a small multiple
+/// wherever the ring is.
+TEST(MeridianEnergy, DistancesBoundTheError)
+{
+  for (const double inner : {0.0, 0.05, 0.5, 100.0})
+  {
+    const double finest = HeldRing(inner, inner + 1, 16, 4).energy();
+    for (int degree = 1; degree <= 3; ++degree)
+    {
+      SCOPED_TRACE(::testing::Message() << "radius " << inner << ", degree " << degree);
+      const HeldRing ring(inner, inner + 1, 3, degree);
+      const double error = finest - ring.energy();
+      EXPECT_GE(ring.square(), error);
+      EXPECT_LE(ring.square(), 1.6 * 1.6 * error);
+    }
+  }
+}
 
 }  // namespace
 
