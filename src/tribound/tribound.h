@@ -23,6 +23,7 @@
 #include "tribound/problem/surface.h"
 #include "tribound/problem/units.h"
 #include "tribound/problem/water.h"
+#include "tribound/problem/weights.h"
 
 // The mesh.
 #include "tribound/mesh/bisect.h"
@@ -63,7 +64,9 @@
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/facet_cuts.h"
 #include "tribound/contact/nitsche/form_history.h"
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/contact/nitsche/interface_check.h"
+#include "tribound/contact/nitsche/meridian_cells.h"
 #include "tribound/contact/nitsche/nitsche.h"
 #include "tribound/contact/nitsche/part_motions.h"
 #include "tribound/contact/nitsche/residual.h"
