@@ -192,6 +192,27 @@ TEST(MeridianConstants, FriedrichsBoundsQuotients)
   }
 }
 
+/// A ring that only contact holds moves along the axis: v_z = 1 on it, and 0 on the ring inside.
+TEST(MeridianConstants, FriedrichsBoundsWhatContactHolds)
+{
+  for (const int n_outer : {3, 4, 7})
+  {
+    mesh::MeshData<2> data =
+        side_by_side(box<2>({0.5, 0}, {1, 1}, {3, 3}), box<2>({1, 0.1}, {2, 1.2}, {2, n_outer}), "_outer");
+    data.interfaces.push_back({{{{"right"}, {"left_outer"}}}});
+    ProblemData<2> rings{.boundaries = {fixed<2>("bottom", free, 0.0)}};
+    rings.pairs = {pair<2>("right", "left_outer")};
+    const mesh::Mesh<2> mesh(std::move(data));
+    const problem::Problem<2> problem = rings.on(mesh).axisymmetric();
+    double jump = 0;
+    for (const contact::ContactSegment<2>& segment : contact::contact_segments(problem, mesh, 1.0))
+      jump += segment.measure / segment.h;  // r = 1
+    const double square = 1.1 * (4 - 1) / 2;
+    EXPECT_GE(certify::meridian_friedrichs(problem, mesh), std::sqrt(square / jump)) << n_outer;
+    EXPECT_LE(certify::meridian_friedrichs(problem, mesh), 20 * std::sqrt(square / jump)) << n_outer;
+  }
+}
+
 TEST(MeridianConstants, NoFriedrichsWithoutHold)
 {
   const mesh::Mesh<2> mesh(random_meridian(0.5, 2, 1));

@@ -8,6 +8,7 @@
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
 #include "tribound/base/sorted.h"
+#include "tribound/certify/bound/meridian_transfer.h"
 #include "tribound/certify/bound/rigid_remainder.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/polynomials.h"
@@ -94,7 +95,7 @@ Estimate Estimator<dim>::operator()(std::span<const double> u, const Stress<dim>
         else
           stress_terms(u, stress, n_threads > 0 ? n_threads : max_threads(), result);
         contact_terms(u, stress, result);
-        if (!meridian_) transfer_terms(u, stress, result);  // on a meridian the facets of bodies match
+        transfer_terms(u, stress, result);
       });
   const double alg = std::isfinite(friedrichs_.value)
                          ? algebraic_error<dim>(form_.problem(), mesh, rho, friedrichs_.value)
@@ -236,11 +237,22 @@ double Estimator<dim>::square_of_lin(const Stress<dim>& stress) const
 }
 
 /// For a cell with several liftings (facets and groups), the largest is added to the stress; the norms of the
-/// others are added after that.
+/// others are added after that. On a meridian nothing is lifted.
 template <int dim>
 void Estimator<dim>::transfer_terms(std::span<const double> u, const Stress<dim>& stress,
                                     Estimate& result) const
 {
+  if constexpr (dim == 2)
+    if (meridian_)
+    {
+      for (const auto& [cell, lost] : meridian_transfers(form_, stress.tractions.running()))
+      {
+        BoundComponents& eta = result.cells[cell];
+        eta.mor = lost;
+        eta.str_mor = eta.str + lost;
+      }
+      return;
+    }
   CellFields fields;
   std::vector<TransferLifting<dim>> liftings;
   for (const auto& [cell, transfers] : facet_transfers<dim>(form_, contact_, stress.tractions.running()))

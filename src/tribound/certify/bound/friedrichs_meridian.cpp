@@ -5,6 +5,7 @@
 #include <limits>
 #include <queue>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "tribound/certify/bound/constants.h"
@@ -40,12 +41,13 @@ struct Reached
   }
 };
 
-/// Facets of two bodies that lie opposite each other, from the side of the first.
+/// Parts of facets of two bodies that lie opposite each other, from the side of the first.
 struct Bridge
 {
-  mesh::BoundaryFacet here;
-  mesh::BoundaryFacet there;
-  double h;  ///< of their segment
+  double exit;   ///< c_{T,k} of the part k in the cell of the first
+  double entry;  ///< that in the cell of the other
+  Index next;    ///< that cell
+  double jump;   ///< the square of the constant of what lies between them
 };
 
 /// The paths of all cells, shortest first.
@@ -56,13 +58,7 @@ class Paths
       : problem_(problem), mesh_(mesh), steps_(mesh.n_cells())
   {
     for (const contact::ContactSegment<2>& segment : contact::contact_segments(problem, mesh, 1.0))
-      if (segment.master)
-      {
-        across_.emplace(segment.slave.facet.cell,
-                        Bridge{segment.slave.facet, segment.master->facet, segment.h});
-        across_.emplace(segment.master->facet.cell,
-                        Bridge{segment.master->facet, segment.slave.facet, segment.h});
-      }
+      if (segment.master) add_bridges(segment);
     start_at_roots();
     while (!queue_.empty())
     {
@@ -107,13 +103,32 @@ class Paths
            mean_weight<2>(problem_,
                           mesh::points_of(mesh_.vertices(), mesh::facet_vertices(mesh_.cell(cell), local)));
   }
-  /// c_{T,F}
-  [[nodiscard]] double crossing(Index cell, int local) const
+  /// c_{T,F}, or of a part of F with the given |k|_r c_{T,k}.
+  [[nodiscard]] double crossing(Index cell, int local, double length) const
   {
     return meridian_trace_constant(mesh::cell_diameter(mesh_, cell),
                                    mesh::facet_geometry(mesh_, cell, local).measure,
                                    mesh::cell_map(mesh_, cell).measure()) /
-           std::sqrt(weighted_length(cell, local));
+           std::sqrt(length);
+  }
+  [[nodiscard]] double crossing(Index cell, int local) const
+  {
+    return crossing(cell, local, weighted_length(cell, local));
+  }
+
+  void add_bridges(const contact::ContactSegment<2>& segment)
+  {
+    const auto length = [&](const contact::SegmentSide<2>& side)
+    {
+      const auto map = contact::simplex_map(mesh_, side);
+      return map.measure * problem_.weight(map(Point<1>::Constant(0.5)));
+    };
+    const auto& [slave, master] = std::pair(segment.slave.facet, segment.master->facet);
+    const double on_slave = crossing(slave.cell, slave.local, length(segment.slave));
+    const double on_master = crossing(master.cell, master.local, length(*segment.master));
+    const double jump = segment.h / length(segment.slave);
+    across_.emplace(slave.cell, Bridge{on_slave, on_master, master.cell, jump});
+    across_.emplace(master.cell, Bridge{on_master, on_slave, slave.cell, jump});
   }
 
   void start_at_roots()
@@ -138,24 +153,21 @@ class Paths
       const Index facet = mesh_.topology().cell_facets[cell][local];
       const auto [first, second] = mesh_.topology().facet_cells[facet];
       const Index next = first == cell ? second : first;
-      if (next >= 0) reach(cell, local, next, mesh_.topology().local_facet(next, facet), 0);
+      if (next >= 0)
+        reach(cell,
+              {crossing(cell, local), crossing(next, mesh_.topology().local_facet(next, facet)), next, 0});
     }
     const auto [first, last] = across_.equal_range(cell);
-    for (auto bridge = first; bridge != last; ++bridge)
-    {
-      const auto& [here, there, h] = bridge->second;
-      reach(cell, here.local, there.cell, there.local, h / weighted_length(cell, here.local));
-    }
+    for (auto bridge = first; bridge != last; ++bridge) reach(cell, bridge->second);
   }
 
-  /// `jump`: the square of the constant of what lies between the two sides of the facet.
-  void reach(Index cell, int local, Index next, int local_of_next, double jump)
+  void reach(Index cell, const Bridge& bridge)
   {
+    const auto& [exit, entry, next, jump] = bridge;
     if (steps_[next].length < infinite) return;
     const Step& step = steps_[cell];
-    const double entry = crossing(next, local_of_next);
     const double before = step.length - step.entry * step.entry;
-    const double through = step.entry + crossing(cell, local);
+    const double through = step.entry + exit;
     queue_.push({{before + through * through + jump + entry * entry, entry, cell}, next});
   }
 
