@@ -201,7 +201,7 @@ TEST(AxialConstant, IsAboveTheBestOneAmongPolynomials)
 {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> number(0, 1);
-  double largest = 0;
+  std::vector<double> ratios;
   for (int trial = 0; trial < 90; ++trial)
   {
     std::array<Point<2>, 3> x = {Point<2>(0, 0), Point<2>(number(random), 2 * number(random) - 1),
@@ -215,9 +215,10 @@ TEST(AxialConstant, IsAboveTheBestOneAmongPolynomials)
     const double best = axial_constant_from_below(x);
     std::ranges::shuffle(x, random);
     EXPECT_GE(certify::axial_constant(x), best) << trial;
-    largest = std::max(largest, certify::axial_constant(x) / best);
+    ratios.push_back(certify::axial_constant(x) / best);
   }
-  EXPECT_LE(largest, 40);
+  std::ranges::sort(ratios);
+  EXPECT_LE(ratios[ratios.size() / 2], 8);
   const std::array<Point<2>, 3> half_square = {Point<2>(0, 0), Point<2>(1, 0), Point<2>(0, 1)};
   EXPECT_NEAR(certify::axial_constant(half_square) / std::sqrt(2), 2.98, 0.02);
 }

@@ -17,6 +17,8 @@
 #include "tribound/certify/energy/edge_moments.h"
 #include "tribound/certify/energy/free_motions.h"
 #include "tribound/certify/energy/load_oscillation.h"
+#include "tribound/certify/energy/meridian_distances.h"
+#include "tribound/certify/energy/meridian_edge_forces.h"
 #include "tribound/certify/energy/quantity_bounds.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/contact/nitsche/form_history.h"
@@ -61,13 +63,15 @@ EnergyBound no_energy_bound(const contact::NitscheForm<dim>& form, std::span<con
   return {.reason = reason, .quantities = QuantityBounds<dim>(form, quantities).from_equilibrium(u, reason)};
 }
 
-/// What the functions on a mesh share. For p = 1 the form has degree 2.
+/// What the functions on a mesh share. For p = 1 the form has degree 2, except on a meridian, where stresses
+/// have a degree more than displacements.
 template <int dim>
 struct EnergyEstimator<dim>::Parts
 {
   Parts(const contact::NitscheForm<dim>& given, const algebra::SolverOptions& solver, bool has_quantities,
         double of_body, PatchStress patches)
-      : form(given.space().degree() >= lowest_degree ? given : richer(given)),
+      : form(given.space().degree() >= lowest_degree || given.problem().is_axisymmetric() ? given
+                                                                                          : richer(given)),
         equilibrator(form, patches),
         systems(form, solver, has_quantities),
         facets(form),
@@ -112,7 +116,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (std::string why = parts_->form.springs().why_unclear(); !why.empty()) reason_ = std::move(why);
-  if (reason_.empty() && quantities_)
+  if (reason_.empty() && quantities_ && !form.problem().is_axisymmetric())
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
 
@@ -122,6 +126,18 @@ EnergyEstimator<dim>::~EnergyEstimator() = default;
 namespace
 {
 
+template <int dim>
+CellDistances distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
+                        std::span<const double> u, std::span<const double> v)
+{
+  if constexpr (dim == 2)
+    if (form.problem().is_axisymmetric()) return meridian_distances(form, stress, u, v);
+  CellDistances result;
+  fem::with_degree<lowest_degree>(form.space().degree(),
+                                  [&](auto q) { result = cell_distances<dim, q>(form, stress, u, v); });
+  return result;
+}
+
 /// E of v and the stress that carries t_h and the springs at u~, and the bounds that follow.
 template <int dim, class Parts>
 EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
@@ -129,9 +145,7 @@ EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const Admi
                        std::span<const double> u, std::span<const double> balanced, std::span<const double> v)
 {
   const contact::NitscheForm<dim>& form = parts.form;
-  CellDistances cells;
-  fem::with_degree<lowest_degree>(form.space().degree(),
-                                  [&](auto q) { cells = cell_distances<dim, q>(form, stress, u, v); });
+  const CellDistances cells = distances(form, stress, u, v);
   std::vector<double> apart(v.begin(), v.end());  // of the springs at v and at u~
   for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= balanced[i];
   std::vector<double> of_springs(cells.square.size(), 0.0);
@@ -188,6 +202,11 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   const auto use = [&](const BoundedState<dim>& state)
   {
     if (!quantities_) return;
+    if (form_.problem().is_axisymmetric())
+    {
+      intervals = quantities_->from_equilibrium(u, "bodies of revolution have no error bars of quantities");
+      return;
+    }
     intervals = quantities_->from_equilibrium(u, {});
     quantities_->add_bounded(state, intervals);
   };
@@ -217,6 +236,9 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
     turning = edge_moments<dim>(
         form.space().mesh(),
         edge_forces<dim>(form.space(), contact::residual<dim>(form, balanced, t_h.at_points)));
+  else if constexpr (dim == 2)
+    if (form.space().degree() < lowest_degree)
+      turning = edge_moments<2>(form.space().mesh(), meridian_edge_forces(form, balanced, t_h.at_points));
   const Stress<dim> stress = parts_->equilibrator.balanced(balanced, t_h.at_points, turning);
 
   const IdentityDefects identities = check_identities<dim>(form, t_h.at_points, stress);

@@ -30,12 +30,29 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
   return -1;
 }
 
+/// What the bound has not yet for bodies of revolution.
+template <int dim>
+std::string meridian_unfit(const contact::NitscheForm<dim>& form)
+{
+  constexpr int largest_degree = 3;
+  const problem::Problem<dim>& problem = form.problem();
+  if (!problem.is_axisymmetric()) return {};
+  if (form.space().degree() > largest_degree)
+    return "bodies of revolution have the bound up to degree 3 of displacements";
+  if (!form.rigid_parts().empty()) return "bodies of revolution have rigid parts";
+  const auto is_on_springs = [](const auto& boundary) { return boundary.spring.has_value(); };
+  if (std::ranges::any_of(problem.boundaries(), is_on_springs)) return "bodies of revolution have springs";
+  if (std::ranges::any_of(problem.regions(), &problem::Region<dim>::has_initial_stress))
+    return "bodies of revolution have an initial stress or a temperature";
+  return {};
+}
+
 }  // namespace
 
 template <int dim>
 std::string laws_unfit(const contact::NitscheForm<dim>& form)
 {
-  if (form.problem().is_axisymmetric()) return "the bodies are axisymmetric";
+  if (std::string unfit = meridian_unfit(form); !unfit.empty()) return unfit;
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;
