@@ -10,13 +10,13 @@
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/meridian_terms.h"
 #include "tribound/certify/bound/poincare_korn.h"
-#include "tribound/certify/bound/weights.h"
 #include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/contact/nitsche/given_data.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/meridian_rules.h"
 #include "tribound/fem/polynomials.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -63,8 +63,8 @@ std::array<Point<2>, 3> vertices_of(const contact::NitscheForm<2>& form, Index c
 double largest_radius(const contact::NitscheForm<2>& form, Index cell, int local)
 {
   const mesh::Mesh<2>& mesh = form.space().mesh();
-  return largest_weight<2>(form.problem(),
-                           mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(cell), local)));
+  return problem::largest_weight<2>(
+      form.problem(), mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(cell), local)));
 }
 
 double smallest_radius(const std::array<Point<2>, 3>& vertices)
@@ -87,7 +87,7 @@ class BodyOscillation
     const int p = form_.space().degree();
     if (degree <= p - 1) return 0;
     const std::array<Point<2>, 3> vertices = vertices_of(form_, cell);
-    const double largest = largest_weight<2>(form_.problem(), vertices);
+    const double largest = problem::largest_weight<2>(form_.problem(), vertices);
     // Of f - f_h; rules integrate polynomials of degree p + 2 as they are.
     const double rest = degree <= p + 2 ? 0 : form_.data().body_remainder(cell).oscillation;
     const Norms rho = norms(cell);
@@ -184,7 +184,8 @@ LoadOscillation meridian_load_oscillation(const contact::NitscheForm<2>& form, s
   const BodyOscillation of_body(form);
   parallel_for(result.cells.size(), [&](std::size_t c) { result.cells[c] = of_body(static_cast<Index>(c)); });
   for (Index c = 0; c < n_cells; ++c)
-    missed[c] = largest_weight<2>(form.problem(), vertices_of(form, c)) * form.data().body_remainder(c).mean;
+    missed[c] =
+        problem::largest_weight<2>(form.problem(), vertices_of(form, c)) * form.data().body_remainder(c).mean;
   add_tractions(form, u, missed, result);
   double squares = 0;
   double least = std::numeric_limits<double>::infinity();    // of the stiffness
