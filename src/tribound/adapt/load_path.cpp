@@ -220,8 +220,8 @@ std::string LoadPath<dim>::repeat(const LoadStep<dim>& step, const std::vector<d
   {
     std::vector<double> change(u.begin(), u.end());
     for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
-    const double moved = contact::stress_norms(form.problem().without_initial_stress(), form.space(), change,
-                                               nullptr, form.meridian())
+    const double moved = contact::stress_norms<dim>(form.problem().without_initial_stress(), form.space(),
+                                                    change, nullptr, form.meridian())
                              .sigma;
     return std::string(moved > most * step.level.norms.sigma ? "the solution is on another branch" : "");
   };
