@@ -23,8 +23,11 @@ struct CellDistances
 };
 
 /// For the stress of `dis` and functions u, v of the form's space; `stress` is in equilibrium on every cell.
+/// `known`: those of another v, which are kept on cells where both are the same; empty with an empty
+/// `known_v`.
 template <int dim, int q>
 [[nodiscard]] CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                                           std::span<const double> u, std::span<const double> v);
+                                           std::span<const double> u, std::span<const double> v,
+                                           const CellDistances& known, std::span<const double> known_v);
 
 }  // namespace tribound::certify

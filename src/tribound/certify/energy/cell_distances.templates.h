@@ -18,15 +18,25 @@ namespace tribound::certify
 
 template <int dim, int q>
 CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                             std::span<const double> u, std::span<const double> v)
+                             std::span<const double> u, std::span<const double> v, const CellDistances& known,
+                             std::span<const double> known_v)
 {
   const fem::LagrangeSpace<dim>& space = form.space();
   const mesh::Mesh<dim>& mesh = space.mesh();
   const auto n_cells = static_cast<std::size_t>(mesh.n_owned_cells());
-  CellDistances result{std::vector<double>(n_cells), std::vector<double>(n_cells),
-                       std::vector<double>(n_cells)};
+  CellDistances result = known;
+  result.square.resize(n_cells);
+  result.to_discrete.resize(n_cells);
+  result.correction.resize(n_cells);
   std::vector<double> c(u.begin(), u.end());
   for (std::size_t i = 0; i < c.size(); ++i) c[i] -= v[i];
+  const auto is_known = [&](Index cell)
+  {
+    return !known_v.empty() &&
+           std::ranges::all_of(
+               space.cell_nodes(cell), [&](Index node)
+               { return std::ranges::equal(v.subspan(dim * node, dim), known_v.subspan(dim * node, dim)); });
+  };
   const InitialMoments<dim, q> initial(form);
   const int n_threads = max_threads();
   std::vector<double> unbalanced(n_threads, 0.0);
@@ -36,6 +46,7 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
     for (std::size_t k = n_cells * thread / n_threads; k < n_cells * (thread + 1) / n_threads; ++k)
     {
       const auto cell = static_cast<Index>(k);
+      if (is_known(cell)) continue;
       const SortedCell<dim> sorted = make_sorted_cell(mesh, cell);
       const problem::Material& material = form.problem().material(mesh.region(cell));
       const auto elastic = [&](std::span<const double> w)
@@ -55,7 +66,7 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
     }
   };
   in_threads(n_threads, on_thread);
-  result.unbalanced = std::ranges::max(unbalanced);
+  result.unbalanced = std::max(known.unbalanced, std::ranges::max(unbalanced));
   return result;
 }
 

@@ -140,9 +140,10 @@ CellDistances distances(const contact::NitscheForm<dim>& form, const Stress<dim>
 
 /// E of v and the stress that carries t_h and the springs at u~, and the bounds that follow.
 template <int dim, class Parts>
-EnergyBound bound_with(const Parts& parts, const Stress<dim>& stress, const AdmissibleTraction<dim>& t_h,
+EnergyBound bound_with(const Parts& parts, const AdmissibleTraction<dim>& t_h,
                        std::span<const double> transfer, const LoadOscillation& loads,
-                       std::span<const double> u, std::span<const double> balanced, std::span<const double> v)
+                       std::span<const double> balanced, std::span<const double> v,
+                       const CellDistances& cells)
 {
   const contact::NitscheForm<dim>& form = parts.form;
   const CellDistances cells = distances(form, stress, u, v);
@@ -254,11 +255,17 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   EnergyBound best{.reason = parts_->facets.touch(form.rigid_parts())
                                  ? "a rigid part that touches a contact boundary would have to move"
                                  : "no displacement near the computed one is admissible"};
+  CellDistances cells;
+  std::span<const double> cells_of;  // the candidate to which they belong
   for (const bool is_open : {true, false})
   {
     const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;
     if (!candidate || (!is_open && !v.has_transition && v.open)) continue;
-    EnergyBound bound = bound_with<dim>(*parts_, stress, t_h, transfer, loads, rich_u, balanced, *candidate);
+    fem::with_degree<lowest_degree>(
+        form.space().degree(),
+        [&](auto q) { cells = cell_distances<dim, q>(form, stress, rich_u, *candidate, cells, cells_of); });
+    cells_of = *candidate;
+    EnergyBound bound = bound_with<dim>(*parts_, t_h, transfer, loads, balanced, *candidate, cells);
     bound.is_open = is_open;
     if (!best.reason.empty() || (bound.reason.empty() && bound.bound < best.bound)) best = std::move(bound);
   }
