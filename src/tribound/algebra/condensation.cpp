@@ -1,6 +1,7 @@
 #include "tribound/algebra/condensation.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <unordered_map>
 #include <utility>
@@ -138,15 +139,62 @@ std::vector<double> Condensation::by_first(const Work& work) const
   return result;
 }
 
-std::vector<double> Condensation::solve_rest(std::span<const double> b) const
+std::vector<std::vector<double>> Condensation::solve_sparse(std::span<const std::vector<double>> b) const
 {
-  std::vector<double> x(b.size());
-  detail::on_owned_entries(sharing_, block_size_, b, x,
-                           [&](Vec own_b, Vec own_x)
-                           { check(MatSolve(factors_.get(), own_b, own_x), "solving a linear system"); });
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (position_[i] >= 0) x[i] = 0;
+  std::vector<std::vector<double>> x;
+  if (sharing_ || b.size() == 1)
+  {
+    for (const std::vector<double>& one : b)
+      detail::on_owned_entries(sharing_, block_size_, one, x.emplace_back(one.size()),
+                               [&](Vec own_b, Vec own_x)
+                               { check(MatSolve(factors_.get(), own_b, own_x), "solving a linear system"); });
+    return x;
+  }
+  const auto rows = static_cast<PetscInt>(position_.size());
+  const auto columns = static_cast<PetscInt>(b.size());
+  const auto dense = [&](double* values)
+  {
+    Mat result = nullptr;
+    check(MatCreateSeqDense(detail::communicator(), rows, columns, values, &result),
+          "solving a linear system");
+    return MatHandle(result);
+  };
+  const MatHandle all_b = dense(nullptr);
+  const MatHandle all_x = dense(nullptr);
+  double* values = nullptr;
+  check(MatDenseGetArrayWrite(all_b.get(), &values), "solving a linear system");
+  for (std::size_t k = 0; k < b.size(); ++k) std::ranges::copy(b[k], values + k * position_.size());
+  check(MatDenseRestoreArrayWrite(all_b.get(), &values), "solving a linear system");
+  check(MatMatSolve(factors_.get(), all_b.get(), all_x.get()), "solving a linear system");
+  const double* found = nullptr;
+  check(MatDenseGetArrayRead(all_x.get(), &found), "solving a linear system");
+  for (std::size_t k = 0; k < b.size(); ++k)
+    x.emplace_back(found + k * position_.size(), found + (k + 1) * position_.size());
+  check(MatDenseRestoreArrayRead(all_x.get(), &found), "solving a linear system");
   return x;
+}
+
+std::vector<std::vector<double>> Condensation::solve_held(std::span<const std::vector<double>> b) const
+{
+  const auto has_forces = [](const std::vector<double>& forces)
+  { return std::ranges::any_of(forces, [](double force) { return force != 0; }); };
+  if (!ranks_.any(std::ranges::any_of(b, has_forces))) return {b.begin(), b.end()};
+  std::vector<std::vector<double>> u = solve_sparse(b);
+  for (std::vector<double>& one : u)
+    for (std::size_t i = 0; i < one.size(); ++i)
+      if (position_[i] >= 0) one[i] = 0;
+  return u;
+}
+
+/// PETSc factorises the Schur complement where MUMPS has left it, and solves with it between the two passes
+/// through the sparse factors.
+std::vector<std::vector<double>> Condensation::solve_whole(std::span<const std::vector<double>> b) const
+{
+  assert(n_layer_ == 0);  // else its factors are there
+  check(MatMumpsSetIcntl(factors_.get(), 26, -1), "solving a linear system");
+  std::vector<std::vector<double>> u = solve_sparse(b);
+  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "solving a linear system");
+  return u;
 }
 
 /// With C_LL = L L^T and V = C_GL L^{-T}: S = C_GG - V V^T, W^T = V L^{-1}. L stays where MUMPS has left C.
@@ -183,7 +231,7 @@ void Condensation::condense()
 void Condensation::set_load(std::span<const double> b)
 {
   b_.assign(b.begin(), b.end());
-  const std::vector<double> of_rest = solve_rest(b_);
+  const std::vector<double> of_rest = solve_held({&b_, 1})[0];
   std::vector<double> c(all_kept_.size(), 0.0);
   for (const Entry& entry : coupling_) c[entry.column] -= entry.value * of_rest[entry.row];
   ranks_.sum(std::span(c));
@@ -269,7 +317,7 @@ std::vector<double> Condensation::expand(std::span<const double> layer_and_trace
 {
   std::vector<double> forces(b.begin(), b.end());
   for (const Entry& entry : coupling_) forces[entry.row] -= entry.value * layer_and_trace[entry.column];
-  std::vector<double> u = solve_rest(forces);
+  std::vector<double> u = solve_held({&forces, 1})[0];
   put(layer_and_trace, u);
   return u;
 }

@@ -49,6 +49,11 @@ class Condensation
   /// The same with another b for given values on layer and trace.
   [[nodiscard]] std::vector<double> expand(std::span<const double> layer_and_trace,
                                            std::span<const double> b) const;
+  /// u everywhere but at ghosts for each b: K u = b, and the same with layer and trace held. As fast as
+  /// expand(), and three at once in little more time than one. solve_whole() only where there is no layer; K
+  /// must be positive definite.
+  [[nodiscard]] std::vector<std::vector<double>> solve_whole(std::span<const std::vector<double>> b) const;
+  [[nodiscard]] std::vector<std::vector<double>> solve_held(std::span<const std::vector<double>> b) const;
 
   /// Replaces b.
   void set_load(std::span<const double> b);
@@ -78,8 +83,7 @@ class Condensation
   [[nodiscard]] bool owns(Index unknown) const;
   /// The values at these unknowns of all ranks, everywhere.
   [[nodiscard]] std::vector<double> of_all(std::span<const Index> own, std::span<const double> values) const;
-  /// K_RR^{-1} b, without layer and trace.
-  [[nodiscard]] std::vector<double> solve_rest(std::span<const double> b) const;
+  [[nodiscard]] std::vector<std::vector<double>> solve_sparse(std::span<const std::vector<double>> b) const;
   /// The result of work() on the first rank, everywhere.
   template <class Work>
   [[nodiscard]] std::vector<double> by_first(const Work& work) const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "tribound/base/dense_factors.h"
@@ -146,6 +147,29 @@ TEST(Condensation, SolvesWithForcesOfTraceAndLayer)
   whole(trace) = r;
   const Vector d = solve_regular(tangent, whole);
   EXPECT_LE((vector(condensed.solve(contact, values(r), 1e-14)) - d(trace)).norm(), 1e-12 * d.norm());
+}
+
+TEST(Condensation, SolvesSeveralWholeProblems)
+{
+  const Matrix k = springs(1);
+  const algebra::Condensation condensed(2, rows(k), {}, trace, std::vector<double>(n, 0.0));
+  const std::vector<std::vector<double>> loads = {values(random_vector(n, 1)), values(random_vector(n, 2)),
+                                                  values(random_vector(n, 3))};
+  const Vector at_rest = Vector::Zero(static_cast<int>(trace.size()));
+  for (const std::size_t count : {loads.size(), std::size_t{1}, loads.size()})  // also after one another
+  {
+    const auto some = std::span(loads).first(count);
+    const std::vector<std::vector<double>> whole = condensed.solve_whole(some);
+    const std::vector<std::vector<double>> held = condensed.solve_held(some);
+    ASSERT_EQ(whole.size(), count);
+    ASSERT_EQ(held.size(), count);
+    for (std::size_t j = 0; j < count; ++j)
+    {
+      const Vector b = vector(loads[j]);
+      EXPECT_LE((k * vector(whole[j]) - b).norm(), 1e-12 * b.norm());
+      EXPECT_LE((vector(held[j]) - Reference(k, b, at_rest).u).norm(), 1e-12 * b.norm());
+    }
+  }
 }
 
 TEST(Condensation, RefusesWhatIsSingular)

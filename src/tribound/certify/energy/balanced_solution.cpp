@@ -60,7 +60,11 @@ std::vector<double> balanced_solution(const contact::NitscheForm<dim>& rich,
                        for (int a = 0; a < dim; ++a) r[dim * node + a] += value * load[dim * richer + a];
                      });
   constexpr double tight = 1e-12;
-  if (&space == &rich.space() && motions.size() == 0) return systems.solve(OnContact::free, r, start, tight);
+  if (&space == &rich.space() && motions.size() == 0)
+  {
+    const std::vector<double> from(start.begin(), start.end());
+    return systems.solve(OnContact::free, {&r, 1}, {&from, 1}, tight)[0];
+  }
   std::vector<char> fixed = fem::dirichlet(rich.problem(), space).fixed;
   const std::vector<Index> supports =
       motions.size() > 0 ? motions.supports(space, fixed) : std::vector<Index>();

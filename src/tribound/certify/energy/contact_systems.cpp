@@ -79,48 +79,67 @@ const ElasticSystem<dim>& ContactSystems<dim>::system(OnContact how)
 }
 
 template <int dim>
-std::vector<double> ContactSystems<dim>::solve(OnContact how, std::span<const double> b,
-                                               std::span<const double> start, double tolerance)
+std::vector<std::vector<double>> ContactSystems<dim>::solve(OnContact how,
+                                                            std::span<const std::vector<double>> b,
+                                                            std::span<const std::vector<double>> starts,
+                                                            double tolerance)
 {
   if (may_condense_) condense();
   if (condensed_)
-    if (std::optional<std::vector<double>> u = solve_condensed(how, b, start, tolerance)) return *u;
-  return system(how).solve(b, start, tolerance);
+    if (auto u = solve_condensed(how, b, {starts.begin(), starts.end()}, tolerance)) return *u;
+  std::vector<std::vector<double>> u;
+  for (std::size_t k = 0; k < b.size(); ++k) u.push_back(system(how).solve(b[k], starts[k], tolerance));
+  return u;
 }
 
 template <int dim>
-std::optional<std::vector<double>> ContactSystems<dim>::solve_condensed(OnContact how,
-                                                                        std::span<const double> b,
-                                                                        std::span<const double> start,
-                                                                        double tolerance)
+std::vector<std::vector<double>> ContactSystems<dim>::corrections(OnContact how,
+                                                                  std::span<const std::vector<double>> r)
+{
+  if (how == OnContact::free) return condensed_->solve_whole(r);
+  if (how == OnContact::held) return condensed_->solve_held(r);
+  std::vector<std::vector<double>> result;
+  for (const std::vector<double>& forces : r)
+  {
+    condensed_->set_load(forces);
+    result.push_back(condensed_->expand(condensed_->solve(springs_, condensed_->load(), 0)));
+  }
+  return result;
+}
+
+template <int dim>
+std::optional<std::vector<std::vector<double>>> ContactSystems<dim>::solve_condensed(
+    OnContact how, std::span<const std::vector<double>> b, std::vector<std::vector<double>> u,
+    double tolerance)
 {
   constexpr int most_attempts = 3;
   const fem::LagrangeSpace<dim>& space = form_.space();
   const std::vector<char> fixed = this->fixed(how);
-  std::vector<double> u(start.begin(), start.end());
-  double scale = 0;
+  std::vector<double> scales;
   for (int attempt = 0;; ++attempt)
   {
-    std::vector<double> r = contact::internal_forces<dim>(form_, u);
-    if (attempt == 0) scale = space.norm(b) + space.norm(r);
-    if (how == OnContact::springs)
-      for (std::size_t e = 0; e < springs_.rows.size(); ++e)
-        r[springs_.rows[e]] += springs_.values[e] * u[springs_.cols[e]];
-    for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed[i] != 0 ? 0 : b[i] - r[i];
-    const double round_off = space.norm(solve::round_off(diagonal_, u));
-    if (attempt > 0 && space.norm(r) <= std::max(tolerance * scale, round_off)) return u;
-    if (attempt == most_attempts) return std::nullopt;
-    std::vector<double> x(condensed_->n_trace(), 0.0);
-    if (how != OnContact::held)
+    std::vector<std::vector<double>> residuals;
+    bool is_solved = attempt > 0;
+    for (std::size_t k = 0; k < u.size(); ++k)
     {
-      condensed_->set_load(r);
-      x = condensed_->solve(how == OnContact::springs ? springs_ : algebra::Triplets{}, condensed_->load(),
-                            0);
+      std::vector<double>& r = residuals.emplace_back(contact::internal_forces<dim>(form_, u[k]));
+      if (attempt == 0) scales.push_back(space.norm(b[k]) + space.norm(r));
+      if (how == OnContact::springs)
+        for (std::size_t e = 0; e < springs_.rows.size(); ++e)
+          r[springs_.rows[e]] += springs_.values[e] * u[k][springs_.cols[e]];
+      for (std::size_t i = 0; i < r.size(); ++i) r[i] = fixed[i] != 0 ? 0 : b[k][i] - r[i];
+      const double round_off = space.norm(solve::round_off(diagonal_, u[k]));
+      is_solved = is_solved && space.norm(r) <= std::max(tolerance * scales[k], round_off);
     }
-    const std::vector<double> change = condensed_->expand(x, r);
-    for (std::size_t i = 0; i < u.size(); ++i)
-      if (fixed[i] == 0) u[i] += change[i];
-    space.update(std::span(u));
+    if (is_solved) return u;
+    if (attempt == most_attempts) return std::nullopt;
+    const std::vector<std::vector<double>> changes = corrections(how, residuals);
+    for (std::size_t k = 0; k < u.size(); ++k)
+    {
+      for (std::size_t i = 0; i < u[k].size(); ++i)
+        if (fixed[i] == 0) u[k][i] += changes[k][i];
+      space.update(std::span(u[k]));
+    }
   }
 }
 

@@ -36,18 +36,24 @@ class ContactSystems
 
   /// s, entries between free degrees of freedom of Gamma_C; for OnContact::springs alone.
   void set_springs(algebra::Triplets springs);
-  /// As ElasticSystem::solve().
-  [[nodiscard]] std::vector<double> solve(OnContact how, std::span<const double> b,
-                                          std::span<const double> start, double tolerance);
+  /// As ElasticSystem::solve(), for each b and its start.
+  [[nodiscard]] std::vector<std::vector<double>> solve(OnContact how, std::span<const std::vector<double>> b,
+                                                       std::span<const std::vector<double>> starts,
+                                                       double tolerance);
+  /// Whether several at once take less time than one after another.
+  [[nodiscard]] bool has_factors() const { return condensed_ != nullptr; }
 
  private:
   void condense();
   [[nodiscard]] std::vector<char> fixed(OnContact how) const;
   [[nodiscard]] const ElasticSystem<dim>& system(OnContact how);
-  /// Up to rounding; nothing if the residual does not fall that far.
-  [[nodiscard]] std::optional<std::vector<double>> solve_condensed(OnContact how, std::span<const double> b,
-                                                                   std::span<const double> start,
-                                                                   double tolerance);
+  /// By the condensed factors, without refinement.
+  [[nodiscard]] std::vector<std::vector<double>> corrections(OnContact how,
+                                                             std::span<const std::vector<double>> r);
+  /// Up to rounding; nothing if a residual does not fall that far.
+  [[nodiscard]] std::optional<std::vector<std::vector<double>>> solve_condensed(
+      OnContact how, std::span<const std::vector<double>> b, std::vector<std::vector<double>> u,
+      double tolerance);
 
   const contact::NitscheForm<dim>& form_;
   algebra::SolverOptions solver_;

@@ -140,7 +140,8 @@ auto LinearIntervals<dim>::natural(const LinearNumber<dim>& number) const -> Nat
   std::vector<Point<dim>> t(state_.form.n_contact_points(), Point<dim>::Zero());
   if (number.weight) t = at_points(exerted(number.weight->at_nodes));
   constexpr double near = 1e-8;
-  const std::vector<double> z = systems_.solve(OnContact::springs, dual.load(t), none, near);
+  const std::vector<double> load = dual.load(t);
+  const std::vector<double> z = systems_.solve(OnContact::springs, {&load, 1}, {&none, 1}, near)[0];
   std::vector<double> y = z;
   if (number.weight)
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += number.weight->at_nodes[i];
@@ -234,14 +235,13 @@ bool LinearIntervals<dim>::fits(const LinearNumber<dim>& number, const Natural& 
 }
 
 template <int dim>
-DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natural natural, double m,
-                                         std::string& reason) const
+auto LinearIntervals<dim>::limited(const LinearNumber<dim>& number, const Natural& natural,
+                                   std::span<const double> factors) const -> std::vector<Limited>
 {
   const fem::LagrangeSpace<dim>& space = state_.form.space();
   const DualProblem<dim>& dual = number.loads ? *number.loads : *unloaded_;
   constexpr double near = 1e-8;  // any z will do
   constexpr double tight = 1e-12;
-  slack_.limit_y(m, natural.y);
   const auto n = static_cast<std::size_t>(basis_.n_nodes());
   for (std::size_t k = 0; k < state_.facets.size(); ++k)
     slack_.limit_r(k, m, std::span(natural.r).subspan(k * n, n));
@@ -252,19 +252,51 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Natura
   result.form = &dual.form();
   result.target.assign(space.n_dofs(), 0.0);
   if (space.norm(load) > 0)
+  std::vector<Limited> result;
+  std::vector<std::vector<double>> loads;
+  std::vector<std::vector<double>> traces;
+  for (const double m : factors)
   {
-    result.target = systems_.solve(OnContact::free, load, result.target, tight);
-    result.stress = dual.balanced(result.target, t, reason);
+    Limited& one = result.emplace_back(Limited{.m = m, .natural = natural});
+    slack_.limit_y(m, one.natural.y);
+    for (std::size_t k = 0; k < state_.facets.size(); ++k)
+      slack_.limit_r(k, m, std::span(one.natural.r).subspan(k * n, n));
+    one.t = at_points(one.natural.r);
+    loads.push_back(dual.load(one.t));
+    traces.push_back(trace(number, one.natural));
   }
+  std::vector<std::vector<double>> z = systems_.solve(OnContact::held, loads, traces, near);
+  for (std::size_t k = 0; k < z.size(); ++k) result[k].z = std::move(z[k]);
+  if (!std::ranges::any_of(loads, [&](const std::vector<double>& load) { return space.norm(load) > 0; }))
+    return result;
+  const std::vector<std::vector<double>> none(loads.size(), std::vector<double>(space.n_dofs(), 0.0));
+  std::vector<std::vector<double>> targets = systems_.solve(OnContact::free, loads, none, tight);
+  for (std::size_t k = 0; k < targets.size(); ++k) result[k].target = std::move(targets[k]);
+  return result;
+}
+
+template <int dim>
+DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Limited limited,
+                                         std::string& reason) const
+{
+  const DualProblem<dim>& dual = number.loads ? *number.loads : *unloaded_;
+  DualPair<dim> result{.z = std::move(limited.z), .target = std::move(limited.target)};
+  if (!fits(number, limited.natural, result.z))
+    reason = "a dual displacement does not fit at the contact boundary";
+  if (result.target.empty())
+    result.target.assign(result.z.size(), 0.0);
+  else
+    result.stress = dual.balanced(result.target, limited.t, reason);
   result.oscillation = dual.oscillation(result.target);  // also of loads whose moments vanish
   return result;
 }
 
 template <int dim>
-LinearBound LinearIntervals<dim>::bound(const LinearNumber<dim>& number, const Natural& natural, double base,
-                                        double m, std::string& reason) const
+LinearBound LinearIntervals<dim>::bound(const LinearNumber<dim>& number, Limited limited, double base,
+                                        std::string& reason) const
 {
-  const DualPair<dim> pair = this->pair(number, natural, m, reason);
+  const double m = limited.m;
+  const DualPair<dim> pair = this->pair(number, std::move(limited), reason);
   const DualProducts products = dual_products<dim>(state_, pair);
   if (!(state_.form.space().mesh().ranks().max(products.unbalanced) <= cell_balance_limit))
     reason = "a cell does not balance its dual stress";
@@ -277,20 +309,25 @@ LinearInterval LinearIntervals<dim>::operator()(const LinearNumber<dim>& number,
   const double mid = state_.bound.mid;
   const Natural natural = this->natural(number);
   LinearInterval result;
-  const LinearBound first = bound(number, natural, base, 0, result.reason);
+  const double unmoved = 0;
+  const LinearBound first =
+      bound(number, std::move(limited(number, natural, {&unmoved, 1})[0]), base, result.reason);
   result.lower = first.centre - first.radius;
   result.upper = first.centre + first.radius;
   result.rounding = first.rounding;
   result.cells = first.cells;
   if (!is_held_ || !result.reason.empty() || !(first.radius > 0 && mid > 0)) return result;
   double smallest = first.radius;
-  double m = first.radius / (mid * mid);  // with this m the radius cannot be smaller
-  constexpr int most_attempts = 3;
-  for (int attempt = 0; attempt < most_attempts; ++attempt)
+  const double largest = first.radius / (mid * mid);  // with this m the radius cannot be smaller
+  const std::array<double, 3> factors = {largest / 4, largest / 16, largest / 64};
+  const std::size_t together = systems_.has_factors() ? factors.size() : 1;
+  std::vector<Limited> next;
+  for (std::size_t attempt = 0; attempt < factors.size(); ++attempt)
   {
-    m /= 4;
+    if (attempt % together == 0)
+      next = limited(number, natural, std::span(factors).subspan(attempt, together));
     std::string reason;
-    const LinearBound sharper = bound(number, natural, base, m, reason);
+    const LinearBound sharper = bound(number, std::move(next[attempt % together]), base, reason);
     if (!reason.empty() || !(sharper.radius < smallest)) break;
     smallest = sharper.radius;
     intersect(result.lower, result.upper, sharper.centre - sharper.radius, sharper.centre + sharper.radius);

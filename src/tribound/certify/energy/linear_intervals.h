@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,10 +57,21 @@ class LinearIntervals
   /// Whether z vanishes where displacements are fixed and [z] + phi is y, up to rounding.
   [[nodiscard]] bool fits(const LinearNumber<dim>& number, const Natural& natural,
                           std::span<const double> z) const;
-  [[nodiscard]] DualPair<dim> pair(const LinearNumber<dim>& number, Natural natural, double m,
+  /// What fits the slack for one m.
+  struct Limited
+  {
+    double m = 0;
+    Natural natural{};
+    std::vector<Point<dim>> t{};   ///< natural.r at the contact points
+    std::vector<double> z{};       ///< with the trace of `natural`
+    std::vector<double> target{};  ///< z of the dual stress; empty: without loads
+  };
+  [[nodiscard]] std::vector<Limited> limited(const LinearNumber<dim>& number, const Natural& natural,
+                                             std::span<const double> factors) const;
+  [[nodiscard]] DualPair<dim> pair(const LinearNumber<dim>& number, Limited limited,
                                    std::string& reason) const;
-  [[nodiscard]] LinearBound bound(const LinearNumber<dim>& number, const Natural& natural, double base,
-                                  double m, std::string& reason) const;
+  [[nodiscard]] LinearBound bound(const LinearNumber<dim>& number, Limited limited, double base,
+                                  std::string& reason) const;
   /// The stiffness of the springs of facet k.
   [[nodiscard]] Tensor<dim> holding(std::size_t k) const;
   [[nodiscard]] algebra::Triplets springs() const;
