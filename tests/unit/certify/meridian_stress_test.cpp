@@ -80,7 +80,7 @@ TEST_P(MeridianStress, BalancesAnyDisplacement)
         const certify::IdentityDefects defects =
             certify::check_identities<2>(c.form, t, stress, remainder(c, u, t));
         EXPECT_EQ(defects.is_symmetric, kind == certify::PatchStress::afw);
-        EXPECT_LE(defects.largest(), kind == certify::PatchStress::rows ? 1e-12 : 1e-10);
+        EXPECT_LE(defects.largest(), 1e-12);
       }
   }
 }

@@ -54,7 +54,8 @@ class MeridianSystem
     MatrixXd outer;                ///< L^{-1} N^T of the facets at the vertex
     CholeskyFactors factors;       ///< of (B, N) M^{-1} (B, N)^T + C
     MatrixXd coupling;             ///< their L^{-1} (B, N) M^{-1} N^T
-    MatrixXd load;                 ///< their L^{-1} ((k, 0) + (B, N) M^{-1} h), a column for each part
+    MatrixXd data;                 ///< (k, 0), a column for each part
+    MatrixXd d;                    ///< L^T d, the same
     std::vector<int> multipliers;  ///< of the facets at the vertex
   };
 
@@ -65,7 +66,8 @@ class MeridianSystem
   [[nodiscard]] MatrixXd condition_data(const MeridianCell& cell, int vertex) const;
   void add_to_system(const MeridianPatchCell& cell, const Eliminated& eliminated);
   void add_tractions();
-  void recover(const MeridianPatchCell& cell, const Eliminated& eliminated, const MatrixXd& mu) const;
+  void improve(std::vector<Eliminated>& cells, const CholeskyFactors& factors) const;
+  void recover(const MeridianPatchCell& cell, const Eliminated& eliminated) const;
 
   /// Calls visit(f, facet) for the facets f of a cell that have multipliers, row by row.
   template <class Visit>
@@ -97,8 +99,6 @@ class MeridianSystem
   [[nodiscard]] bool must_balance() const { return first_row_ + n_rows_ == 2 && !is_fixed_; }
   /// Whether there is a part with u and f; it is the first one.
   [[nodiscard]] bool has_dis() const { return first_part_ == 0; }
-  /// Whether that has h.
-  [[nodiscard]] bool has_hoop_load() const { return has_dis() && !is_by_rows(); }
   [[nodiscard]] const MatrixXd* traction(const Facet& facet, int column) const
   {
     const int end = mesh_.topology().facets[facet.number][0] == vertex_ ? 0 : 1;
@@ -119,7 +119,7 @@ class MeridianSystem
   int n_multipliers_ = 0;
   Eigen::RowVectorXd y_;
   MatrixXd matrix_;
-  MatrixXd load_;
+  MatrixXd traces_;  ///< N d, as it should be
 };
 
 void MeridianSystem::solve()
@@ -127,7 +127,7 @@ void MeridianSystem::solve()
   number_facets();
   make_compatible();
   matrix_ = MatrixXd::Zero(n_multipliers_, n_multipliers_);
-  load_ = MatrixXd::Zero(n_multipliers_, n_parts_);
+  traces_ = MatrixXd::Zero(n_multipliers_, n_parts_);
   std::vector<Eliminated> eliminated;
   for (const MeridianPatchCell& cell : cells_)
   {
@@ -140,20 +140,39 @@ void MeridianSystem::solve()
   if (const auto axial = std::ranges::find(at_vertex_, 1, &Facet::row);
       must_balance() && axial != at_vertex_.end())
     matrix_(axial->first, axial->first) += matrix_.trace() / n_multipliers_;
-  MatrixXd mu(n_multipliers_, n_parts_);
-  if (n_multipliers_ > 0)
+  CholeskyFactors factors;
+  if (n_multipliers_ > 0) factors = CholeskyFactors(matrix_);
+  if (n_multipliers_ > 0 && !factors.is_definite())
   {
-    const CholeskyFactors factors(matrix_);
-    if (!factors.is_definite())
-    {
-      double worst = 0;
-      for (const MeridianPatchCell& cell : cells_)
-        worst = std::max(worst, slenderness(cell.prepared->sorted));
-      throw no_equilibrated_stress<2>(mesh_.vertex(vertex_), worst);
-    }
-    mu = factors.solve(load_);
+    double worst = 0;
+    for (const MeridianPatchCell& cell : cells_) worst = std::max(worst, slenderness(cell.prepared->sorted));
+    throw no_equilibrated_stress<2>(mesh_.vertex(vertex_), worst);
   }
-  for (std::size_t i = 0; i < cells_.size(); ++i) recover(cells_[i], eliminated[i], mu);
+  // Far from the axis hoop stresses hardly resist motions of the cells: a second pass takes away the
+  // rounding.
+  for (int pass = 0; pass < (is_by_rows() ? 1 : 2); ++pass) improve(eliminated, factors);
+  for (std::size_t i = 0; i < cells_.size(); ++i) recover(cells_[i], eliminated[i]);
+}
+
+/// Adds to d = -h + B^T eta + N^T mu what its conditions lack; row by row it starts from 0.
+void MeridianSystem::improve(std::vector<Eliminated>& cells, const CholeskyFactors& factors) const
+{
+  MatrixXd load = -traces_;
+  std::vector<MatrixXd> lacking;
+  for (const Eliminated& cell : cells)
+  {
+    lacking.push_back(solve_lower(cell.factors.lower(), cell.data - cell.local.transpose() * cell.d));
+    load(cell.multipliers, Eigen::all) +=
+        cell.outer.transpose() * cell.d + cell.coupling.transpose() * lacking.back();
+  }
+  const MatrixXd mu = n_multipliers_ > 0 ? factors.solve(load) : load;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+  {
+    Eliminated& cell = cells[i];
+    const MatrixXd at_cell = mu(cell.multipliers, Eigen::all);
+    const MatrixXd eta = solve_lower_transposed(cell.factors.lower(), lacking[i] + cell.coupling * at_cell);
+    cell.d += cell.local * eta - cell.outer * at_cell;
+  }
 }
 
 /// Where all cells of a facet have an edge on the axis, normal traces are r P^p: their moments on P^p
@@ -257,39 +276,27 @@ MeridianSystem::Eliminated MeridianSystem::eliminate(const MeridianPatchCell& ce
     throw no_equilibrated_stress<2>(prepared.sorted.origin, slenderness(prepared.sorted));
   const MatrixXd products = result.local.transpose() * result.outer;
   result.coupling = solve_lower(result.factors.lower(), products);
-  MatrixXd data = MatrixXd::Zero(result.local.cols(), n_parts_);
-  data.topRows(m) = condition_data(prepared, o);
-  if (has_hoop_load()) data.col(0) += result.local.transpose() * prepared.load[o];
-  result.load = solve_lower(result.factors.lower(), data);
+  result.data = MatrixXd::Zero(result.local.cols(), n_parts_);
+  result.data.topRows(m) = condition_data(prepared, o);
+  result.d = MatrixXd::Zero(n, n_parts_);
+  if (has_dis() && !is_by_rows()) result.d.col(0) = -prepared.load[o];
   return result;
 }
 
 void MeridianSystem::add_to_system(const MeridianPatchCell& cell, const Eliminated& eliminated)
 {
-  const MatrixXd matrix =
+  matrix_(eliminated.multipliers, eliminated.multipliers) +=
       eliminated.outer.transpose() * eliminated.outer - eliminated.coupling.transpose() * eliminated.coupling;
-  const MatrixXd load = eliminated.coupling.transpose() * eliminated.load;
-  const std::vector<int>& numbers = eliminated.multipliers;
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-  {
-    for (std::size_t j = 0; j < numbers.size(); ++j) matrix_(numbers[i], numbers[j]) += matrix(i, j);
-    load_.row(numbers[i]) += load.row(i);
-  }
   if (!has_dis()) return;
   const SortedCell<2>& sorted = cell.prepared->sorted;
   const int o = sorted.find(vertex_);
-  if (has_hoop_load())
-  {
-    const VectorXd traces = eliminated.outer.transpose() * cell.prepared->load[o];
-    for (std::size_t i = 0; i < numbers.size(); ++i) load_(numbers[i], 0) -= traces[i];
-  }
   for_each_facet(cell,
                  [&](int f, const Facet& at_vertex)
                  {
                    const VectorXd trace =
                        reference_.trace[f] * (target(*cell.prepared, o, at_vertex.row) *
                                               (-1 / std::sqrt(sorted.grad_norm[f]) * sorted.grad[f]));
-                   load_.col(0).segment(at_vertex.first, at_vertex.size) += trace.head(at_vertex.size);
+                   traces_.col(0).segment(at_vertex.first, at_vertex.size) -= trace.head(at_vertex.size);
                  });
 }
 
@@ -298,22 +305,15 @@ void MeridianSystem::add_tractions()
   for (const Facet& facet : at_vertex_)
     for (int part = 0; part < n_parts_; ++part)
       if (const MatrixXd* t = traction(facet, part))
-        load_.col(part).segment(facet.first, facet.size) -= t->col(facet.row).head(facet.size);
+        traces_.col(part).segment(facet.first, facet.size) += t->col(facet.row).head(facet.size);
 }
 
-void MeridianSystem::recover(const MeridianPatchCell& cell, const Eliminated& eliminated,
-                             const MatrixXd& mu) const
+void MeridianSystem::recover(const MeridianPatchCell& cell, const Eliminated& eliminated) const
 {
   if (cell.stress[first_part_].empty()) return;
   const MeridianCell& prepared = *cell.prepared;
-  MatrixXd at_cell(eliminated.multipliers.size(), n_parts_);
-  for (std::size_t i = 0; i < eliminated.multipliers.size(); ++i)
-    at_cell.row(i) = mu.row(eliminated.multipliers[i]);
-  const MatrixXd eta =
-      solve_lower_transposed(eliminated.factors.lower(), eliminated.load + eliminated.coupling * at_cell);
-  MatrixXd d = eliminated.local * eta - eliminated.outer * at_cell;
+  const MatrixXd& d = eliminated.d;
   const int o = prepared.sorted.find(vertex_);
-  if (has_hoop_load()) d.col(0) -= prepared.load[o];
   const Eigen::Index n_fields = prepared.mass.lower().rows();  // of all components, or one
   for (int part = 0; part < n_parts_; ++part)
   {
