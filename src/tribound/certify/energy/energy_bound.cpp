@@ -126,15 +126,17 @@ EnergyEstimator<dim>::~EnergyEstimator() = default;
 namespace
 {
 
+/// `known`, `known_v`: of cell_distances().
 template <int dim>
 CellDistances distances(const contact::NitscheForm<dim>& form, const Stress<dim>& stress,
-                        std::span<const double> u, std::span<const double> v)
+                        std::span<const double> u, std::span<const double> v, const CellDistances& known,
+                        std::span<const double> known_v)
 {
   if constexpr (dim == 2)
     if (form.problem().is_axisymmetric()) return meridian_distances(form, stress, u, v);
   CellDistances result;
-  fem::with_degree<lowest_degree>(form.space().degree(),
-                                  [&](auto q) { result = cell_distances<dim, q>(form, stress, u, v); });
+  fem::with_degree<lowest_degree>(form.space().degree(), [&](auto q)
+                                  { result = cell_distances<dim, q>(form, stress, u, v, known, known_v); });
   return result;
 }
 
@@ -146,7 +148,6 @@ EnergyBound bound_with(const Parts& parts, const AdmissibleTraction<dim>& t_h,
                        const CellDistances& cells)
 {
   const contact::NitscheForm<dim>& form = parts.form;
-  const CellDistances cells = distances(form, stress, u, v);
   std::vector<double> apart(v.begin(), v.end());  // of the springs at v and at u~
   for (std::size_t i = 0; i < apart.size(); ++i) apart[i] -= balanced[i];
   std::vector<double> of_springs(cells.square.size(), 0.0);
@@ -261,9 +262,7 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   {
     const std::optional<std::vector<double>>& candidate = is_open ? v.open : v.closed;
     if (!candidate || (!is_open && !v.has_transition && v.open)) continue;
-    fem::with_degree<lowest_degree>(
-        form.space().degree(),
-        [&](auto q) { cells = cell_distances<dim, q>(form, stress, rich_u, *candidate, cells, cells_of); });
+    cells = distances(form, stress, rich_u, *candidate, cells, cells_of);
     cells_of = *candidate;
     EnergyBound bound = bound_with<dim>(*parts_, t_h, transfer, loads, balanced, *candidate, cells);
     bound.is_open = is_open;

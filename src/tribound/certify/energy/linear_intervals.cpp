@@ -243,15 +243,6 @@ auto LinearIntervals<dim>::limited(const LinearNumber<dim>& number, const Natura
   constexpr double near = 1e-8;  // any z will do
   constexpr double tight = 1e-12;
   const auto n = static_cast<std::size_t>(basis_.n_nodes());
-  for (std::size_t k = 0; k < state_.facets.size(); ++k)
-    slack_.limit_r(k, m, std::span(natural.r).subspan(k * n, n));
-  const std::vector<Point<dim>> t = at_points(natural.r);
-  const std::vector<double> load = dual.load(t);
-  DualPair<dim> result{.z = systems_.solve(OnContact::held, load, trace(number, natural), near)};
-  if (!fits(number, natural, result.z)) reason = "a dual displacement does not fit at the contact boundary";
-  result.form = &dual.form();
-  result.target.assign(space.n_dofs(), 0.0);
-  if (space.norm(load) > 0)
   std::vector<Limited> result;
   std::vector<std::vector<double>> loads;
   std::vector<std::vector<double>> traces;
@@ -281,6 +272,7 @@ DualPair<dim> LinearIntervals<dim>::pair(const LinearNumber<dim>& number, Limite
 {
   const DualProblem<dim>& dual = number.loads ? *number.loads : *unloaded_;
   DualPair<dim> result{.z = std::move(limited.z), .target = std::move(limited.target)};
+  result.form = &dual.form();
   if (!fits(number, limited.natural, result.z))
     reason = "a dual displacement does not fit at the contact boundary";
   if (result.target.empty())
