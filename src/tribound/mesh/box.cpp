@@ -69,8 +69,7 @@ struct Grid
     for (int i = 0; i < dim; ++i)
     {
       n_cubes[i] = box.cells[i];
-      n_points[i] = n_cubes[i] + 1;
-      stride[i] = i == 0 ? 1 : stride[i - 1] * n_points[i - 1];
+      stride[i] = i == 0 ? 1 : stride[i - 1] * (std::int64_t{n_cubes[i - 1]} + 1);
     }
   }
 
@@ -86,9 +85,9 @@ struct Grid
     for (int i = 0; i < dim; ++i) cube[i] += corner >> i & 1;
     return cube;
   }
-  [[nodiscard]] Index vertex(const std::array<Index, dim>& at) const
+  [[nodiscard]] std::int64_t vertex(const std::array<Index, dim>& at) const
   {
-    Index v = 0;
+    std::int64_t v = 0;
     for (int i = 0; i < dim; ++i) v += at[i] * stride[i];
     return v;
   }
@@ -106,42 +105,49 @@ struct Grid
 
   const BoxMesh& box;
   std::array<Index, dim> n_cubes;
-  std::array<Index, dim> n_points;
-  std::array<Index, dim> stride;  ///< between the vertex numbers of neighbours along an axis
+  std::array<std::int64_t, dim> stride;  ///< between the vertex numbers of neighbours along an axis
 };
+
+void expect(const BoxMesh& box, bool good, const char* key, const std::string& problem,
+            const std::string& hint)
+{
+  if (good) return;
+  Where where = box.where;
+  where.key += key;
+  throw InputError(where, problem, hint);
+}
+
+/// Throws InputError if there are more cells than `most`.
+void expect_at_most(const BoxMesh& box, std::int64_t most)
+{
+  double n_cells = box.lower.size() == 2 ? 2.0 : 6.0;
+  for (const int cubes : box.cells) n_cells *= cubes;
+  expect(box, n_cells <= static_cast<double>(most), ".cells", fmt::format("makes {:.3g} simplices", n_cells),
+         fmt::format("at most {}", most));
+}
 
 }  // namespace
 
 void require_valid(const BoxMesh& box)
 {
-  const auto expect = [&](bool good, const char* key, const std::string& problem, const std::string& hint)
-  {
-    if (good) return;
-    Where where = box.where;
-    where.key += key;
-    throw InputError(where, problem, hint);
-  };
   const std::size_t dim = box.lower.size();
-  expect((dim == 2 || dim == 3) && box.upper.size() == dim && box.cells.size() == dim, "",
+  expect(box, (dim == 2 || dim == 3) && box.upper.size() == dim && box.cells.size() == dim, "",
          fmt::format("lower, upper and cells have {}, {} and {} numbers", dim, box.upper.size(),
                      box.cells.size()),
          "each has 2 in 2D, 3 in 3D");
-  double n_cells = dim == 2 ? 2.0 : 6.0;
   for (std::size_t i = 0; i < dim; ++i)
   {
-    expect(std::isfinite(box.lower[i]) && std::isfinite(box.upper[i]), "",
+    expect(box, std::isfinite(box.lower[i]) && std::isfinite(box.upper[i]), "",
            fmt::format("reaches from {} to {} along {}", box.lower[i], box.upper[i], "xyz"[i]),
            "finite numbers in lower and upper");
-    expect(box.lower[i] < box.upper[i], ".upper",
+    expect(box, box.lower[i] < box.upper[i], ".upper",
            fmt::format("upper[{}] = {} is not above lower[{}] = {}", i, box.upper[i], i, box.lower[i]),
            "lower and upper are opposite corners of the box");
-    expect(box.cells[i] >= 1, ".cells", fmt::format("cells[{}] = {}", i, box.cells[i]),
+    expect(box, box.cells[i] >= 1, ".cells", fmt::format("cells[{}] = {}", i, box.cells[i]),
            "at least one cell along every axis");
-    n_cells *= box.cells[i];
   }
-  constexpr int largest = std::numeric_limits<Index>::max() / Topology<3>::n_cell_edges;
-  expect(n_cells <= largest, ".cells", fmt::format("makes {:.3g} simplices", n_cells),
-         fmt::format("at most {}", largest));
+  constexpr std::int64_t most_of_ranks = 1'000'000'000'000'000;  // sums of several boxes are numbers, too
+  expect_at_most(box, most_of_ranks);
 }
 
 template <int dim>
@@ -175,8 +181,11 @@ template <int dim>
 MeshData<dim> box_mesh(const BoxMesh& box)
 {
   MeshData<dim> data{box_labels<dim>(box)};
+  expect_at_most(box, std::numeric_limits<Index>::max() / Topology<3>::n_cell_edges);
   const Grid<dim> grid(box);
-  for_each_grid_point<dim>(grid.n_points, [&](const auto& at) { data.vertices.push_back(grid.point(at)); });
+  std::array<Index, dim> n_points = grid.n_cubes;
+  for (Index& n : n_points) ++n;
+  for_each_grid_point<dim>(n_points, [&](const auto& at) { data.vertices.push_back(grid.point(at)); });
   for_each_grid_point<dim>(grid.n_cubes,
                            [&](const auto& cube)
                            {
@@ -184,7 +193,7 @@ MeshData<dim> box_mesh(const BoxMesh& box)
                              {
                                Cell<dim>& cell = data.cells.emplace_back();
                                for (int i = 0; i <= dim; ++i)
-                                 cell[i] = grid.vertex(grid.corner(cube, corners[i]));
+                                 cell[i] = static_cast<Index>(grid.vertex(grid.corner(cube, corners[i])));
                                for (int i = 0; i <= dim; ++i)
                                  for_each_side<dim>(facet_vertices(corners, i), cube, grid.n_cubes,
                                                     [&](int tag) {
@@ -325,7 +334,7 @@ std::vector<CellRecord<dim>> box_records(const Boxes& boxes, std::int64_t first,
     }
     first_cell += n;
     std::uint64_t n_vertices = 1;
-    for (const int cubes : box.cells) n_vertices *= cubes + 1;
+    for (const int cubes : box.cells) n_vertices *= static_cast<std::uint64_t>(cubes) + 1;
     first_vertex += n_vertices;
   }
   return all;

@@ -14,18 +14,18 @@
 namespace tribound::mesh
 {
 
-/// Throws InputError for a box that is not of 2 or 3 dimensions, has no volume or no cells, or has so many
-/// cells that an Index cannot number their edges.
+/// Throws InputError for a box that is not of 2 or 3 dimensions, has no volume or no cells, or more of them
+/// than ranks can share.
 void require_valid(const BoxMesh& box);
 
 /// Vertex (i, j) has number j (nx+1) + i; square (i, j) is cut from lower left to upper right into
 /// (v00, v10, v11), (v00, v11, v01). A cube is cut into 6 Kuhn tetrahedra around its diagonal v000 - v111.
 /// Boundary names: left right bottom top, in 3D also back (z = lower) and front (z = upper). Region: "box".
-/// Throws as require_valid() does.
+/// Throws as require_valid() does, and where an Index cannot number the edges of all cells.
 template <int dim>
 [[nodiscard]] MeshData<dim> box_mesh(const BoxMesh& box);
 
-/// Boxes of one dimension, one after the other. Throws as require_valid() does, and for boxes of different
+/// Boxes of one dimension, one after the other. Throws as box_mesh() does, and for boxes of different
 /// dimensions.
 template <int dim>
 [[nodiscard]] MeshData<dim> box_meshes(const Boxes& boxes);

@@ -1,5 +1,8 @@
 #include "tribound/mesh/box.h"
 
+#include <cmath>
+#include <cstdint>
+
 #include "unit/mesh/mesh_testing.h"
 
 namespace tribound
@@ -102,6 +105,21 @@ TEST(Box, RejectsNonsenseNamingTheKey)
         (void)mesh::read_mesh(mesh::BoxMesh{{0}, {1}, {2}, where});
       },
       {"1, 1 and 1 numbers"});
+}
+
+TEST(Box, RecordsOfManyRanksHaveNumbersBeyond32Bits)
+{
+  const mesh::BoxMesh large{{0, 0, 0}, {4000, 3000, 2000}, {4000, 3000, 2000}, {}};
+  const std::int64_t n = mesh::n_box_cells(large);
+  EXPECT_EQ(n, 144'000'000'000);
+  const mesh::CellRecord<3> last = mesh::box_records<3>(large, n - 1, n).front();
+  EXPECT_EQ(last.name.root, n - 1);
+  for (const mesh::VertexName<3>& vertex : last.vertices)
+  {
+    const auto at = [&](int axis) { return static_cast<std::uint64_t>(std::llround(vertex.position[axis])); };
+    EXPECT_EQ(vertex.origin, at(0) + 4001 * (at(1) + 3001 * at(2)));
+    EXPECT_GT(vertex.origin, 24'000'000'000U);
+  }
 }
 
 TEST(Box, ReadMeshTakesTheDimensionFromTheNumberOfEntries)
