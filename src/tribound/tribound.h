@@ -92,6 +92,7 @@
 #include "tribound/algebra/condensation.h"
 #include "tribound/algebra/linear_solver.h"
 #include "tribound/algebra/petsc.h"
+#include "tribound/algebra/sparse_rows.h"
 #include "tribound/solve/newton.h"
 
 // The equilibrated stress, its identities, the components of the bound, and the resulting verdict.

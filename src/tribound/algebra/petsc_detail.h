@@ -69,6 +69,8 @@ void on_owned_entries(const Sharing& sharing, int block_size, std::span<const do
 }
 /// The reverse: entries for all unknowns from a vector of what this process owns; 0 for those of ghosts.
 [[nodiscard]] std::vector<double> from_owned_entries(const Sharing& sharing, int block_size, Vec owned);
+/// Throws SolveError if a matrix has more rows on all ranks than a PetscInt can number.
+void require_numbered(std::int64_t n_rows);
 /// The number of an unknown in PETSc's rows.
 [[nodiscard]] inline PetscInt global_unknown(const fem::NodeNumbers& nodes, int block_size, int unknown)
 {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <limits>
@@ -61,10 +63,19 @@ void multiply_in_threads(Mat a)
 
 }  // namespace
 
+void detail::require_numbered(std::int64_t n_rows)
+{
+  constexpr PetscInt most = std::numeric_limits<PetscInt>::max();
+  if (n_rows > most)
+    throw SolveError(fmt::format(
+        "the matrix has {} rows, of which this PETSc can number {}: lower adapt.max_dofs or raise "
+        "the tolerance",
+        n_rows, most));
+}
+
 void SparseMatrix::create()
 {
-  if (sharing_ && block_size_ * sharing_->n > std::numeric_limits<PetscInt>::max())
-    throw SolveError("the matrix has more rows than 32 bits can number");
+  if (sharing_) detail::require_numbered(block_size_ * sharing_->n);
   const auto n = static_cast<PetscInt>(sharing_ ? sharing_->owned.size() * block_size_ : size_);
   Mat mat = nullptr;
   check(MatCreate(detail::communicator(sharing_), &mat), "creating a matrix");

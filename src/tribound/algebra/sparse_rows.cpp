@@ -1,18 +1,34 @@
 #include "tribound/algebra/sparse_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "tribound/base/error.h"
+
 namespace tribound::algebra
 {
+
+void require_countable(std::size_t n_entries)
+{
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (n_entries > most)
+    throw SolveError(fmt::format(
+        "the matrix of a process has {} entries, at most {} can be counted with 32 bits: take more "
+        "processes or fewer unknowns",
+        n_entries, most));
+}
 
 // Contact has many entries for one place: a marker per column finds them faster than a sort.
 SparseRows pattern_of(Index n, const Triplets& entries, std::vector<int>& places)
 {
+  require_countable(entries.rows.size());
   const auto counts = [&](std::size_t k) { return entries.rows[k] >= 0 && entries.cols[k] >= 0; };
   places.assign(entries.rows.size(), -1);
   std::vector<int> begin(n + 1, 0);
@@ -53,6 +69,7 @@ SparseRows sum(const SparseRows& a, const SparseRows& b)
                    std::back_inserter(result.columns));
     result.end_row();
   }
+  require_countable(result.columns.size());
   result.columns.shrink_to_fit();
   result.values.resize(result.columns.size());
   assign_sum(a, b, result);

@@ -3,6 +3,7 @@
 /// @file sparse_rows.h
 /// Sums of sparse matrices as plain data.
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,9 @@
 
 namespace tribound::algebra
 {
+
+/// SparseRows and PETSc count the entries of a process with 32 bits. Throws SolveError if there are more.
+void require_countable(std::size_t n_entries);
 
 /// The pattern of `entries` as n rows, with values 0. `places`: the position of each entry in it, -1 for
 /// those that do not count.

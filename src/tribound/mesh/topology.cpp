@@ -1,8 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cassert>
 #include <limits>
 #include <type_traits>
 
+#include "tribound/base/error.h"
 #include "tribound/mesh/mesh.h"
 
 namespace tribound::mesh
@@ -142,7 +144,12 @@ std::vector<std::array<Index, 2>> cells_of_facets(std::size_t n_facets,
 template <int dim>
 Topology<dim> build_topology(Index n_vertices, std::span<const Cell<dim>> cells)
 {
-  assert(cells.size() <= std::numeric_limits<Index>::max() / Topology<dim>::n_cell_edges);
+  constexpr std::size_t most = std::numeric_limits<Index>::max() / Topology<dim>::n_cell_edges;
+  if (cells.size() > most)
+    throw SolveError(
+        fmt::format("a process has {} cells, at most {} can be numbered with 32 bits: take more "
+                    "processes or lower adapt.max_cells",
+                    cells.size(), most));
   Topology<dim> topology;
   number_entities<dim>(n_vertices, cells, local_facets<dim>, topology.facets, topology.cell_facets);
   topology.facet_cells = cells_of_facets<dim>(topology.facets.size(), topology.cell_facets);

@@ -7,11 +7,17 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "support/fields.h"
+#include "tribound/algebra/petsc_detail.h"
+#include "tribound/algebra/sparse_rows.h"
+#include "tribound/base/error.h"
 
 namespace tribound::test
 {
@@ -114,6 +120,50 @@ TEST(SparseMatrix, SumHasBothPatterns)
       EXPECT_LE(distance(c.multiply(ramp(30)), expected), 1e-10);
     }
   }
+}
+
+/// What SolveError says of a count.
+template <class Require>
+std::string refusal(const Require& require, std::int64_t count)
+{
+  try
+  {
+    require(count);
+  }
+  catch (const SolveError& error)
+  {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SparseMatrix, CountsThatNumbersCannotHoldAreRefused)
+{
+  const auto entries = [](std::int64_t n) { algebra::require_countable(n); };
+  constexpr std::int64_t most = std::numeric_limits<int>::max();
+  EXPECT_EQ(refusal(entries, most), "");
+  EXPECT_EQ(refusal(entries, most + 1),
+            "the matrix of a process has 2147483648 entries, at most 2147483647 can be counted with 32 bits: "
+            "take more processes or fewer unknowns");
+  constexpr std::int64_t most_rows = std::numeric_limits<PetscInt>::max();
+  EXPECT_EQ(refusal(algebra::detail::require_numbered, most_rows), "");
+  if constexpr (most_rows == most)
+  {
+    EXPECT_EQ(refusal(algebra::detail::require_numbered, 3'000'000'000),
+              "the matrix has 3000000000 rows, of which this PETSc can number 2147483647: lower "
+              "adapt.max_dofs or raise the tolerance");
+  }
+}
+
+TEST(SparseMatrix, RowsOfManyRanksAreNumberedBeyond32Bits)
+{
+  fem::NodeNumbers nodes;
+  nodes.first = 3'000'000'000;
+  nodes.n = 4'000'000'000;
+  nodes.owned = {1};
+  nodes.global = {2'999'999'999, 3'000'000'000};
+  EXPECT_FALSE(algebra::detail::is_owned(nodes, 3, 2));
+  EXPECT_TRUE(algebra::detail::is_owned(nodes, 3, 3));
 }
 
 TEST(AlgebraVersions, AreKnown)

@@ -132,6 +132,13 @@ TEST(Topology, OfGmshMeshesIsTheDefinition)
   expect_same(solid.topology(), by_definition<3>(solid.n_vertices(), solid.cells()));
 }
 
+TEST(Topology, OfMoreCellsThanNumbersIsRefused)
+{
+  const mesh::Cell<3> cell{0, 1, 2, 3};
+  const std::span<const mesh::Cell<3>> many(&cell, 357'913'942);  // only counted
+  EXPECT_THROW((void)mesh::build_topology<3>(4, many), SolveError);
+}
+
 TEST(Topology, OfAVertexWithManyCellsStaysExact)
 {
   const Index n = 5000;  // a fan around vertex 0

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "tribound/algebra/sparse_rows.h"
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/contact/nitsche/meridian_cells.h"
@@ -200,6 +201,9 @@ algebra::SparseRows stiffness(const problem::Problem<dim>& problem, const fem::L
                parts[part] = stiffness_rows<dim>(BlockRow<dim>(problem, space, springs, meridian.get()),
                                                  space, cells, constraints, begin(part), begin(part + 1));
              });
+  algebra::require_countable(std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                                             [](std::size_t n, const algebra::SparseRows& part)
+                                             { return n + part.columns.size(); }));
   algebra::SparseRows rows = std::move(parts.front());
   for (int part = 1; part < n_parts; ++part) rows.append(std::exchange(parts[part], {}));
   return rows;
