@@ -195,7 +195,7 @@ def check_failures(program: str, directory: Path) -> None:
 
 
 def main() -> None:
-    program, directory = sys.argv[1], Path(sys.argv[2]).resolve()
+    program, directory = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
     if not any(name and shutil.which(name) for name in BROWSERS):
         skip("there is no chromium (Debian: chromium)")
     if not shutil.which("pdftotext"):
