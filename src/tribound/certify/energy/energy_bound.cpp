@@ -251,6 +251,8 @@ EnergyBound EnergyEstimator<dim>::bound(std::span<const double> u, const Use& us
   const AdmissibleDisplacements v = admissible_displacements<dim>(form, rich_u, t);
   if (!v.reason.empty()) return {.reason = v.reason};
   const std::vector<double> transfer = transfer_oscillation<dim>(form, parts_->terms, t_h.at_points);
+  if (ranks.any(!std::ranges::all_of(transfer, [](double of_cell) { return std::isfinite(of_cell); })))
+    return {.reason = "contact tractions are no polynomials on a facet of a cell that touches the axis"};
   const LoadOscillation loads = load_oscillation<dim>(form, balanced, parts_->korn);
   if (!loads.reason.empty()) return {.reason = loads.reason};
   EnergyBound best{.reason = parts_->facets.touch(form.rigid_parts())

@@ -150,14 +150,19 @@ std::vector<double> transfer_oscillation(const contact::NitscheForm<dim>& form,
     if (cell < mesh.n_owned_cells() && loss > 0)
       result[cell] += loss_factor(form, cell, facet) * loss / std::sqrt(least_stiffness(form, cell));
   };
-  const auto transfers_of_cells = form.problem().is_axisymmetric()  // there facets match
-                                      ? std::map<Index, std::vector<FacetTransfer<dim>>>()
-                                      : facet_transfers<dim>(form, terms, t);
-  for (const auto& [cell, transfers] : transfers_of_cells)
+  // With the weight r the constant is infinite at the axis, and rounding would count.
+  const auto is_whole = [&](std::span<const TractionPiece<dim>> pieces)
+  {
+    constexpr double rounding = 1e-9;
+    return form.problem().is_axisymmetric() && pieces.size() == 1 &&
+           fem::fraction<dim - 1>(pieces[0].part) >= 1 - rounding;
+  };
+  for (const auto& [cell, transfers] : facet_transfers<dim>(form, terms, t))
     for (const FacetTransfer<dim>& transfer : transfers)
       for (const auto& pieces : transfer.groups)
-        add(cell, transfer.facet.local,
-            transfer_loss<dim>(mesh, transfer.facet, form.space().degree(), pieces));
+        if (!is_whole(pieces))
+          add(cell, transfer.facet.local,
+              transfer_loss<dim>(mesh, transfer.facet, form.space().degree(), pieces));
   for (const auto& [facet, square] : turning_losses(form, terms, t))
     add(facet.first, facet.second, std::sqrt(square));
   return result;
