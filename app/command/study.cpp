@@ -220,6 +220,7 @@ class StudyCommand
     const certify::LocalError error = certify::solution_error<dim>(
         problem_, discrete.space, kept.level.u, reference_->discrete->space, reference_->level.u);
     result.error = error.global;
+    result.error->energy *= std::sqrt(problem_.full_circle());
     result.intervals_agree = io::intervals_agree(result.record, study_.reference->level);
     const case_file::Config config = variant_config(config_, study_.variants[variant].name);
     if (config.output.vtu)

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -22,6 +23,7 @@
 #include "tribound/contact/support/rigid_motion.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/output_directory.h"
+#include "tribound/io/record/error_bars.h"
 #include "tribound/io/record/facts.h"
 #include "tribound/solve/newton.h"
 
@@ -208,10 +210,15 @@ void verify_solution(const contact::NitscheForm<dim>& form, std::span<const doub
                           return certify::compare_with_richer<dim>(form, u, space, gamma0, newton,
                                                                    config.method.solver, bound_richer);
                         });
+  const double circle = form.problem().full_circle();
+  if (result.richer && result.richer->error) result.richer->error->energy *= std::sqrt(circle);
   result.energy = result.iterates.back().energy;
-  if (result.energy || config.adapt.bars.levels == adapt::EnergyLevels::off) return;
-  progress.stage("bounding the error in the energy norm");
-  result.energy = timed("energy", result, [&] { return adapt::energy_bound<dim>(form, config.method, u); });
+  if (!result.energy && config.adapt.bars.levels != adapt::EnergyLevels::off)
+  {
+    progress.stage("bounding the error in the energy norm");
+    result.energy = timed("energy", result, [&] { return adapt::energy_bound<dim>(form, config.method, u); });
+  }
+  if (result.energy) io::scale_energies(*result.energy, circle);
 }
 
 /// Returns why there is no solution; empty: there is one.

@@ -54,10 +54,6 @@ void read_model(const TableReader& root, Config& config)
       refuse(load.where, "temperatures and initial stresses", "forces per volume: body = [0, -9.81]");
   for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
   for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
-  const adapt::ErrorBars& bars = config.adapt.bars;
-  if (bars.energy_tolerance || !bars.goal.empty() || config.adapt.measure == adapt::ErrorMeasure::energy)
-    refuse(root.require("adapt").where, "bound in the energy norm",
-           "the bound of the residual: tolerance = 0.05");
 }
 
 }  // namespace tribound::case_file

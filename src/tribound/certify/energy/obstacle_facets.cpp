@@ -34,11 +34,8 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
 template <int dim>
 std::string meridian_unfit(const contact::NitscheForm<dim>& form)
 {
-  constexpr int largest_degree = 3;
   const problem::Problem<dim>& problem = form.problem();
   if (!problem.is_axisymmetric()) return {};
-  if (form.space().degree() > largest_degree)
-    return "bodies of revolution have the bound up to degree 3 of displacements";
   if (!form.rigid_parts().empty()) return "bodies of revolution have rigid parts";
   const auto is_on_springs = [](const auto& boundary) { return boundary.spring.has_value(); };
   if (std::ranges::any_of(problem.boundaries(), is_on_springs)) return "bodies of revolution have springs";

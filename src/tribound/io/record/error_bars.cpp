@@ -37,6 +37,17 @@ std::string words_of_remainders(const certify::EnergyBound& bound, const CaseFac
 
 }  // namespace
 
+void scale_energies(certify::EnergyBound& bound, double circle)
+{
+  using certify::EnergyBound;
+  for (double EnergyBound::*const energy : {&EnergyBound::gap, &EnergyBound::contact, &EnergyBound::springs})
+    bound.*energy *= circle;
+  for (double EnergyBound::*const norm :
+       {&EnergyBound::bound, &EnergyBound::b_v, &EnergyBound::mid, &EnergyBound::dist,
+        &EnergyBound::correction, &EnergyBound::oscillation, &EnergyBound::transfer})
+    bound.*norm *= std::sqrt(circle);
+}
+
 std::optional<double> energy_bound(const LevelRecord& level)
 {
   return has_bound(level) ? std::optional(level.energy->bound) : std::nullopt;

@@ -13,6 +13,10 @@
 namespace tribound::io
 {
 
+/// From the energies and energy norms of one radian to those of the full circle, whose energies are `circle`
+/// times as large. Its quantities are those of the full circle already.
+void scale_energies(certify::EnergyBound& bound, double circle);
+
 /// The bound of the error in the energy norm, if there is one.
 [[nodiscard]] std::optional<double> energy_bound(const LevelRecord& level);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tribound/io/record/error_bars.h"
+
 namespace tribound::io
 {
 
@@ -48,7 +50,11 @@ LevelRecord level_record(const adapt::LevelView<dim>& view, const Point<dim>& mo
   else  // a violated identity means no bound, and none is shown
     for (adapt::CertifiedStep& step : record.newton) step.bound = {}, step.linearisation = {};
   record.energy = level.energy;
-  if (record.energy) drop_cells(*record.energy);
+  if (record.energy)
+  {
+    drop_cells(*record.energy);
+    scale_energies(*record.energy, form.problem().full_circle());
+  }
   record.times = {.stages = {.solve = level.solve_seconds,
                              .certify = level.certify_seconds,
                              .bisect = level.refinement.bisect,
