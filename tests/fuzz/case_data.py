@@ -73,6 +73,15 @@ class Case:
         default = 10.0 if self.degree <= 3 else 48.0
         return float(self.table.get("nitsche", {}).get("gamma0", default))
 
+    @property
+    def is_axisymmetric(self):
+        return self.table.get("model") == "axisymmetric"
+
+    @property
+    def full_circle(self):
+        """By which integrals over the meridian are multiplied in the certificate."""
+        return 2 * np.pi if self.is_axisymmetric else 1.0
+
     def get(self, dotted, default):
         value = self.table
         for key in dotted.split("."):

@@ -65,13 +65,22 @@ def judge_displacement(verdict, residual, entry, number):
     verdict.check(free == entry["dofs"], f"level {number}: {free} free nodal values, dofs {entry['dofs']}")
     length = np.linalg.norm(level.nodal, axis=2).max()
     verdict.check(near(length, entry["max_displacement"], 1e-10), f"level {number}: max_displacement, found {length}")
-    points, weights = rule(d, 2 * p)
-    cells = np.repeat(np.arange(len(level.cells)), len(weights))
-    all_points = np.tile(points, (len(level.cells), 1))
+    if level.is_axisymmetric:
+        cells, all_points, weights = level.radial_rule(2 * p)
+    else:
+        points, weights = rule(d, 2 * p)
+        cells = np.repeat(np.arange(len(level.cells)), len(weights))
+        all_points = np.tile(points, (len(level.cells), 1))
+        weights = np.tile(weights, len(level.cells)) * level.volumes[cells]
     stress = level.stress(cells, all_points, residual.materials)
-    weights = np.tile(weights, len(level.cells)) * level.volumes[cells]
-    energy = np.einsum("p,pij,pij->", weights, stress, level.gradient(cells, all_points))
-    norm = stress_norm(residual) if residual.has_initial_stress else np.sqrt(np.einsum("p,pij,pij->", weights, stress, stress))
+    gradient = level.gradient(cells, all_points)
+    energy = np.einsum("p,pij,pij->", weights, stress, gradient)
+    square = np.einsum("p,pij,pij->", weights, stress, stress)
+    if level.is_axisymmetric:
+        hoop = level.hoop_stress(cells, all_points, residual.materials)
+        energy = 2 * np.pi * (energy + weights @ (hoop * level.hoop(cells, all_points, gradient)))
+        square += weights @ hoop**2
+    norm = stress_norm(residual) if residual.has_initial_stress else np.sqrt(square)
     rounding = 1e-10 * np.sqrt(weights.sum()) * residual.materials.max() * scale / level.size
     # The program integrates an initial stress that varies by one rule for each cell, which may miss a part of it.
     if all(f.is_constant for sigma_0 in residual.initial for f in sigma_0.formulas()):

@@ -7,9 +7,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from simplices import bernstein, bernstein_gradients, lattice
+from simplices import bernstein, bernstein_gradients, lattice, rule
 
 SAME_POINT = 1e-10  # relative to the size of the body
+RATIONAL = 24  # by which degrees of rules are raised for quotients by r
 
 
 class Inconsistent(Exception):
@@ -44,6 +45,7 @@ class Level:
     def __init__(self, grid, case):
         self.dimension = d = grid.dimension
         self.degree = p = case.degree
+        self.is_axisymmetric = case.is_axisymmetric
         if d != case.dimension or grid.points.shape[1] != len(lattice(d + 1, p)):
             raise Inconsistent(f"cells of {grid.points.shape[1]} nodes in {d}D for degree {p}")
         points, displacement = grid.points[:, :, :d], grid.arrays["displacement"][:, :, :d]
@@ -96,10 +98,43 @@ class Level:
         by_lambda = np.einsum("pav,pai->piv", bernstein_gradients(points, self.degree), self.coefficients[cells])
         return np.einsum("piv,pvj->pij", by_lambda, self.gradients[cells])
 
+    def weight(self, cells, points):
+        """r on a meridian."""
+        return self.places(cells, points)[:, 0] if self.is_axisymmetric else np.ones(len(cells))
+
+    def radial_rule(self, degree):
+        """Cells, points and weights times r of a rule on a meridian, also for quotients by r: it is collapsed at the vertex
+        of each cell that is next to the axis."""
+        points, weights = rule(2, degree + RATIONAL)
+        n, m = len(self.cells), len(weights)
+        cells, everywhere = np.repeat(np.arange(n), m), np.tile(points, (n, 1)).reshape(n, m, 3)
+        nearest = self.vertices[self.cells][:, :, 0].argmin(axis=1)
+        for vertex in (0, 2):  # rule() is collapsed at vertex 1
+            here = nearest == vertex
+            order = [0, 1, 2]
+            order[1], order[vertex] = vertex, 1
+            everywhere[here] = everywhere[here][:, :, order]
+        everywhere = everywhere.reshape(-1, 3)
+        return cells, everywhere, np.tile(weights, n) * self.volumes[cells] * self.weight(cells, everywhere)
+
+    def hoop(self, cells, points, gradient):
+        """u_r / r on a meridian, else 0."""
+        if not self.is_axisymmetric:
+            return np.zeros(len(cells))
+        r = self.places(cells, points)[:, 0]
+        far = r > 1e-12 * self.size
+        return np.where(far, self.displacement(cells, points)[:, 0] / np.where(far, r, 1.0), gradient[:, 0, 0])
+
+    def hoop_stress(self, cells, points, materials):
+        gradient = self.gradient(cells, points)
+        lam, mu = materials[cells].T
+        hoop = self.hoop(cells, points, gradient)
+        return lam * (np.trace(gradient, axis1=1, axis2=2) + hoop) + 2 * mu * hoop
+
     def stress(self, cells, points, materials):
         gradient = self.gradient(cells, points)
         lam, mu = materials[cells].T
-        trace = np.trace(gradient, axis1=1, axis2=2)
+        trace = np.trace(gradient, axis1=1, axis2=2) + self.hoop(cells, points, gradient)
         return (lam * trace)[:, None, None] * np.eye(self.dimension) + mu[:, None, None] * (
             gradient + gradient.transpose(0, 2, 1)
         )

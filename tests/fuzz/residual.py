@@ -2,7 +2,8 @@
 
     <R(u), v> = L(v) - a(u, v) - (K (u - u_0), v)_S + (T(u), v)_C,  ||v||^2 = ||grad v||^2 + sum_F ||v||_F^2 / h_F,
 
-v = 0 where u is prescribed, F in C and S.
+v = 0 where u is prescribed, F in C and S. On the meridian of a body of revolution all integrals have the weight r,
+sigma_tt v_r / r is part of a(u, v), and ||v_r / r||^2 of the norm.
 
 The supremum is taken over continuous P^q on the mesh. Data are integrated over parts of cells and facets, which are cut
 where formulas and the contact law have kinks.
@@ -64,7 +65,8 @@ class Residual:
         for function in more_cuts:
             owners, parts = cut(owners, parts, lambda o, b: function(o, facets.in_cell(o, b)))
         owners, points, weights = composite(owners, parts, FACET_DEGREE)
-        return owners, facets.in_cell(owners, points), weights * facets.measures[owners]
+        points = facets.in_cell(owners, points)
+        return owners, points, weights * facets.measures[owners] * self.level.weight(facets.cells[owners], points)
 
     def load(self, q):
         """<R, B> for the functions of each cell: cells x functions x components."""
@@ -112,7 +114,7 @@ class Residual:
         for number, name in enumerate(self.region_names):
             cells = np.flatnonzero(level.regions == number)
             force = self.case.body_force(name)
-            if all(f.is_constant for f in force):
+            if all(f.is_constant for f in force) and not level.is_axisymmetric:
                 constant = np.array([f(np.zeros((1, level.dimension)))[0] for f in force])
                 result[cells] = (level.volumes[cells] / n_functions)[:, None, None] * constant
                 continue
@@ -130,7 +132,7 @@ class Residual:
             for kink in f.kinks:
                 owners, parts = cut(owners, parts, lambda o, b: value(kink, self.level.places(cells[o], b)))
         owners, points, weights = composite(owners, parts, CELL_DEGREE)
-        return cells[owners], points, weights * self.level.volumes[cells[owners]]
+        return cells[owners], points, weights * self.level.volumes[cells[owners]] * self.level.weight(cells[owners], points)
 
     def initial_forces(self, q):
         """(sigma_0, grad B)."""
@@ -146,6 +148,8 @@ class Residual:
     def internal_forces(self, q):
         """(sigma(u), grad B)."""
         level = self.level
+        if level.is_axisymmetric:
+            return self.radial_forces(q)
         points, weights = rule(level.dimension, level.degree + q)
         n, m = len(level.cells), len(weights)
         stress = level.stress(np.repeat(np.arange(n), m), np.tile(points, (n, 1)), self.materials)
@@ -154,6 +158,18 @@ class Residual:
         table = bernstein_gradients(points, q) * weights[:, None, None]
         result = np.einsum("qav,cqvi->cai", table, by_lambda, optimize=True)
         return result + self.initial_forces(q) if self.has_initial_stress else result
+
+    def radial_forces(self, q):
+        """(r sigma(u), grad B) + (sigma_tt(u), B_r) on a meridian."""
+        level = self.level
+        cells, points, weights = level.radial_rule(level.degree + q)
+        n = len(level.cells)
+        stress = level.stress(cells, points, self.materials) * weights[:, None, None]
+        by_lambda = np.einsum("pij,pvj->pvi", stress, level.gradients[cells])
+        terms = np.einsum("pav,pvi->pai", bernstein_gradients(points, q), by_lambda, optimize=True)
+        hoop = level.hoop_stress(cells, points, self.materials) * weights / level.weight(cells, points)
+        terms[:, :, 0] += hoop[:, None] * bernstein(points, q)
+        return terms.reshape(n, -1, *terms.shape[1:]).sum(axis=1)
 
     # the contact law
 
@@ -215,34 +231,54 @@ class Residual:
         n = numbers.max() + 1
         load = np.zeros((n, level.dimension))
         np.add.at(load, numbers, self.load(q))
-        matrix = self.matrix(q, numbers, n)
         squared = 0.0
         solvers = {}
         for component in range(level.dimension):
             free = np.flatnonzero(~self.fixed(component, q, numbers, n))
             if len(free) == 0:
                 continue
-            if (key := free.tobytes()) not in solvers:
+            has_hoop = level.is_axisymmetric and component == 0
+            if (key := (free.tobytes(), has_hoop)) not in solvers:
+                matrix = self.matrix(q, numbers, n, has_hoop)
                 solvers[key] = splu(matrix[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A")
             z = solvers[key].solve(load[free, component])
             squared += load[free, component] @ z
         return np.sqrt(max(squared, 0.0))
 
-    def matrix(self, q, numbers, n):
+    def radial_blocks(self, q, has_hoop):
+        """int r grad B_a . grad B_b on the cells of a meridian, with int B_a B_b / r."""
+        level = self.level
+        cells, points, weights = level.radial_rule(2 * q)
+        n = len(level.cells)
+        weights = weights.reshape(n, -1)
+        gradients = np.einsum("pav,pvi->pai", bernstein_gradients(points, q), level.gradients[cells])
+        gradients = gradients.reshape(n, weights.shape[1], -1, 2)
+        blocks = np.einsum("cq,cqai,cqbi->cab", weights, gradients, gradients, optimize=True)
+        if has_hoop:
+            r = level.weight(cells, points).reshape(weights.shape)
+            values = bernstein(points, q).reshape(n, weights.shape[1], -1)
+            blocks += np.einsum("cq,cqa,cqb->cab", weights / r**2, values, values, optimize=True)
+        return blocks.reshape(n, -1)
+
+    def matrix(self, q, numbers, n, has_hoop):
         level = self.level
         metric = np.einsum("cvi,cwi->cvw", level.gradients, level.gradients) * level.volumes[:, None, None]
         size = numbers.shape[1]
-        blocks = metric.reshape(len(metric), -1) @ stiffness_table(level.dimension, q).reshape(-1, size * size)
+        if level.is_axisymmetric:
+            blocks = self.radial_blocks(q, has_hoop)
+        else:
+            blocks = metric.reshape(len(metric), -1) @ stiffness_table(level.dimension, q).reshape(-1, size * size)
         rows = [np.repeat(numbers, size, axis=1).ravel()]
         columns = [np.tile(numbers, (1, size)).ravel()]
         entries = [blocks.ravel()]
-        points, weights = rule(level.dimension - 1, 2 * q)
+        points, weights = rule(level.dimension - 1, 2 * q + 1)
         for name in self.contact + self.springs:
             facets = self.boundary[name]
             owners = np.repeat(np.arange(len(facets)), len(weights))
-            values = bernstein(facets.in_cell(owners, np.tile(points, (len(facets), 1))), q)
-            values = values.reshape(len(facets), len(weights), size)
+            in_cell = facets.in_cell(owners, np.tile(points, (len(facets), 1)))
+            values = bernstein(in_cell, q).reshape(len(facets), len(weights), size)
             scale = (facets.measures / facets.sizes)[:, None] * weights
+            scale = scale * level.weight(facets.cells[owners], in_cell).reshape(scale.shape)
             entries.append(np.einsum("fq,fqa,fqb->fab", scale, values, values, optimize=True).ravel())
             rows.append(np.repeat(numbers[facets.cells], size, axis=1).ravel())
             columns.append(np.tile(numbers[facets.cells], (1, size)).ravel())
