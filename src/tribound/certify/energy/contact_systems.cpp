@@ -96,13 +96,15 @@ template <int dim>
 std::vector<std::vector<double>> ContactSystems<dim>::corrections(OnContact how,
                                                                   std::span<const std::vector<double>> r)
 {
-  if (how == OnContact::free) return condensed_->solve_whole(r);
+  // in one pass where it was tried, on one process
+  if (how == OnContact::free && form_.space().mesh().ranks().size() == 1) return condensed_->solve_whole(r);
   if (how == OnContact::held) return condensed_->solve_held(r);
   std::vector<std::vector<double>> result;
   for (const std::vector<double>& forces : r)
   {
     condensed_->set_load(forces);
-    result.push_back(condensed_->expand(condensed_->solve(springs_, condensed_->load(), 0)));
+    result.push_back(condensed_->expand(condensed_->solve(
+        how == OnContact::springs ? springs_ : algebra::Triplets{}, condensed_->load(), 0)));
   }
   return result;
 }
