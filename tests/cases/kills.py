@@ -29,7 +29,6 @@ ENVIRONMENT = runner.ENVIRONMENT | {
     "OPENBLAS_NUM_THREADS": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
 }
 
 LEVELS = """
@@ -88,7 +87,7 @@ def tribound(directory, *arguments, at_change=None, ranks=1):
     if at_change:
         command = ["env", f"LD_PRELOAD={LIBRARY}", "=".join(map(str, at_change)), *command]
     if ranks > 1:
-        command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", str(ranks), *command]
+        command = [MPIRUN, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks), *command]
     return subprocess.run(command, cwd=directory, env=ENVIRONMENT, capture_output=True, text=True, timeout=runner.TIME_LIMIT)
 
 

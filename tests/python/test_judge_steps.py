@@ -226,7 +226,7 @@ class Pairs(unittest.TestCase):
 @unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "no program, or no mpirun")
 class Program(unittest.TestCase):
     def judge(self, folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
-        start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        start = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks)] if ranks > 1 else []
         series = ["--steps", "--solution", "theirs/series.pvd"]
         command = [*start, str(PROGRAM), "judge", "case.toml", "-q", *series]
         environment = dict(os.environ)  # without what MPI has set in this process

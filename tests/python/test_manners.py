@@ -220,7 +220,7 @@ except PETSc.Error as error:
 
 @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
 class Ranks(unittest.TestCase):
-    MPIRUN = ("mpirun", "--oversubscribe", "-n", "2")
+    MPIRUN = ("mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", "2")
 
     def test_results_are_the_same_on_all(self) -> None:
         script = """

@@ -18,7 +18,6 @@ MPIRUN, PROGRAM, FAULT, EXAMPLES, CASES, DIRECTORY = sys.argv[1:7]
 ENVIRONMENT = os.environ | {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
 }
@@ -28,7 +27,7 @@ failures = []
 
 
 def command(n, program, *arguments):
-    return [MPIRUN, "--oversubscribe", "--bind-to", "none", "-n", str(n), program, *arguments]
+    return [MPIRUN, "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1", "-n", str(n), program, *arguments]
 
 
 def run(n, program, *arguments):
