@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tribound/base/error.h"
 #include "tribound/case/dimension.h"
 
@@ -20,16 +22,20 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
 
 void check_contact(const problem::Contact& contact, const Where& where)
 {
-  if (std::holds_alternative<problem::Slider>(contact.law))
-    refuse(where, "sliders", "displacement = [0, \"free\"] or [\"free\", 0]");
-  if (contact.water) refuse(where, "water in its joints", to_3d);
+  if (contact.base)
+    refuse(contact.base->where, "bases of hydraulic structures", "water = { pressure = ... } in the joint");
 }
 
-void check_boundary(const BoundaryConfig& boundary)
+/// The part moves along the axis alone: it needs no point.
+void check_rigid(RigidConfig& rigid)
 {
-  if (boundary.rigid) refuse(boundary.where, "rigid parts", "displacements, or tractions");
-  if (boundary.spring) refuse(boundary.where, "springs", "displacements, or contact");
-  if (boundary.contact) check_contact(*boundary.contact, boundary.where);
+  constexpr auto right = "the force along the axis, on the full circle: force = [0, -100]";
+  if (!rigid.moment.empty())
+    refuse(inside(rigid.where, "moment"), "moments on rigid parts, which do not turn", right);
+  if (!rigid.force.empty() && !rigid.force[0].is_zero())
+    refuse(inside(rigid.where, "force"),
+           "radial forces on rigid parts, which keep their distance from the axis", right);
+  if (std::ranges::find(rigid.fixed, "rz") == rigid.fixed.end()) rigid.fixed.emplace_back("rz");
 }
 
 }  // namespace
@@ -49,10 +55,11 @@ void read_model(const TableReader& root, Config& config)
     if (material.plane == problem::PlaneModel::stress)
       refuse(inside(material.where, "plane"), "plane stress",
              "leave plane out: the stress around the axis follows from the hoop strain");
-  for (const LoadConfig& load : config.loads)
-    if (load.temperature || !load.initial_stress.empty())
-      refuse(load.where, "temperatures and initial stresses", "forces per volume: body = [0, -9.81]");
-  for (const BoundaryConfig& boundary : config.boundaries) check_boundary(boundary);
+  for (BoundaryConfig& boundary : config.boundaries)
+  {
+    if (boundary.rigid) check_rigid(*boundary.rigid);
+    if (boundary.contact) check_contact(*boundary.contact, boundary.where);
+  }
   for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
 }
 

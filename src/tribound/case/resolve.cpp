@@ -145,7 +145,8 @@ std::vector<const T*> by_region(const std::vector<T>& entries, std::span<const s
   return found;
 }
 
-/// The entries of the initial stress; in plane strain zz may follow.
+/// The entries of the initial stress; in plane strain zz may follow, of a body of revolution that around the
+/// axis.
 template <int dim>
 void set_initial_stress(const LoadConfig& load, problem::PlaneModel plane, problem::Region<dim>& region)
 {
@@ -157,8 +158,10 @@ void set_initial_stress(const LoadConfig& load, problem::PlaneModel plane, probl
                      "three entries: [xx, yy, xy]");
   if (given.size() != n && !(dim == 2 && given.size() == n + 1))
     throw InputError(where, fmt::format("has {} entries in a case in {}D", given.size(), dim),
-                     dim == 2 ? "three entries, [xx, yy, xy], in plane strain also [xx, yy, xy, zz]"
-                              : "six entries: [xx, yy, zz, xy, yz, xz]");
+                     dim == 2
+                         ? "three entries, [xx, yy, xy], in plane strain also [xx, yy, xy, zz]; of a body of "
+                           "revolution [rr, zz, rz], also [rr, zz, rz, hoop]"
+                         : "six entries: [xx, yy, zz, xy, yz, xz]");
   for (std::size_t i = 0; i < n; ++i) region.initial_stress[i] = in_dimension<dim>(given[i]);
   if (given.size() > n) region.initial_stress_zz = in_dimension<dim>(given[n]);
 }

@@ -112,9 +112,12 @@ void measure_initial_stress(const contact::NitscheForm<dim>& form, LoadFacts& fa
       const double warmer =
           region.material.expansion == 0 ? 0 : region.temperature(x) - region.reference_temperature(x);
       Tensor<dim> rest = problem.initial_stress(mesh.region(c), x);
-      rest.diagonal().array() += thermal_modulus(region.material) * warmer;
+      const double thermal = thermal_modulus(region.material) * warmer;
+      rest.diagonal().array() += thermal;
+      const double hoop =
+          problem.is_axisymmetric() ? problem.initial_stress_zz(mesh.region(c), x) + thermal : 0;
       facts.thermal_strain = std::max(facts.thermal_strain, std::abs(region.material.expansion * warmer));
-      facts.initial_stress = std::max(facts.initial_stress, rest.norm());
+      facts.initial_stress = std::max({facts.initial_stress, rest.norm(), std::abs(hoop)});
     }
   }
 }

@@ -196,11 +196,11 @@ void fix_axis(const problem::Problem<dim>& problem, const LagrangeSpace<dim>& sp
   for (const mesh::BoundaryFacet& facet : mesh.boundary())
   {
     const problem::BoundaryCondition<dim>& boundary = problem.boundary(facet.tag);
-    if (!boundary.contact && !boundary.is_loaded() && !boundary.fixes(1)) continue;
+    if (!boundary.is_in_norm() && !boundary.is_loaded() && !boundary.fixes(1)) continue;
     if (std::ranges::all_of(mesh::facet_vertices(mesh.cell(facet.cell), facet.local),
                             [&](Index v) { return mesh.vertex(v)[0] == 0; }))
       throw InputError(boundary.where, fmt::format("boundary \"{}\" lies on the axis", boundary.name),
-                       "no contact and no load where x = 0, and at most displacement = [0, \"free\"]");
+                       "no contact, spring or load where x = 0, and at most displacement = [0, \"free\"]");
   }
   for (Index c = 0; c < mesh.n_cells(); ++c)
     for (int i = 0; i < space.basis().n_nodes(); ++i)

@@ -123,7 +123,7 @@ bool Region<dim>::has_initial_stress() const
 {
   const bool is_heated =
       material.expansion != 0 && !(temperature.is_zero() && reference_temperature.is_zero());
-  return is_heated || !std::ranges::all_of(initial_stress, &Field::is_zero);
+  return is_heated || !initial_stress_zz.is_zero() || !std::ranges::all_of(initial_stress, &Field::is_zero);
 }
 
 template <int dim>
@@ -350,6 +350,10 @@ Problem<dim> Problem<dim>::axisymmetric() const
   assert(dim == 2);
   Problem result = *this;
   result.is_axisymmetric_ = true;
+  for (BoundaryCondition<dim>& boundary : result.boundaries_)
+    if (boundary.rigid)
+      for (std::size_t i = 0; i < boundary.rigid->fixed.size(); ++i)
+        if (i != 1) boundary.rigid->fixed[i] = true;
   return result;
 }
 

@@ -44,7 +44,7 @@ struct Region
   std::array<Field, n_symmetric<dim>> initial_stress{};  ///< without that of the temperature
   Field temperature{};
   Field reference_temperature{};  ///< at which the region is free of thermal stress
-  Field initial_stress_zz{};      ///< 2D, plane strain
+  Field initial_stress_zz{};      ///< 2D, plane strain; of bodies of revolution around the axis
 
   /// Whether sigma_0 can be non-zero.
   [[nodiscard]] bool has_initial_stress() const;
@@ -200,7 +200,8 @@ class Problem
   /// Whether any datum names t.
   [[nodiscard]] bool uses_time() const;
   /// The same on the meridian of bodies of revolution, whose points are (r, z): the hoop strain u_r / r
-  /// counts among the strains, and every integral has the weight r. Only in 2D.
+  /// counts among the strains, and every integral has the weight r. Rigid parts move along z alone. Only in
+  /// 2D.
   [[nodiscard]] Problem axisymmetric() const;
   [[nodiscard]] bool is_axisymmetric() const { return is_axisymmetric_; }
   /// The weight of integrals at x: r of an axisymmetric problem, else 1.

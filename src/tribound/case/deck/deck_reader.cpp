@@ -27,7 +27,7 @@ constexpr std::string_view other_analyses =
     "CFD|GREEN|SUBSTRUCTURE GENERATE|SENSITIVITY|COMPLEX FREQUENCY|CRACK PROPAGATION|MASS FLOW|";
 
 /// What cases of bodies of revolution do not have.
-constexpr std::string_view not_axisymmetric = "|RIGID BODY|COUPLING|KINEMATIC|DISTRIBUTING|TEMPERATURE|";
+constexpr std::string_view not_axisymmetric = "|RIGID BODY|COUPLING|KINEMATIC|DISTRIBUTING|";
 
 bool is_among(const std::string& keyword, std::string_view names)
 {

@@ -123,7 +123,8 @@ std::vector<Resultant<dim>> integrate_springs(const contact::NitscheForm<dim>& f
   for (const contact::SpringFacet<dim>& facet : form.springs().facets())
     if (facet.number < mesh.n_owned_boundary())
       for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, form.facet_rule()))
-        result[mesh.boundary()[facet.number].tag].add(x - about, dx * form.springs().traction(facet, u, q));
+        result[mesh.boundary()[facet.number].tag].add(
+            x - about, form.problem().weight(x) * dx * form.springs().traction(facet, u, q));
   add_up<dim>(mesh.ranks(), result);
   return result;
 }
@@ -199,13 +200,14 @@ std::vector<Resultant<dim>> sum_reactions(const contact::NitscheForm<dim>& form,
   return result;
 }
 
-/// The given force and moment.
+/// The given force and moment, as integrals without full_circle().
 template <int dim>
-Resultant<dim> force_on(const problem::RigidPart<dim>& part, const Point<dim>& about)
+Resultant<dim> force_on(const problem::Problem<dim>& problem, const problem::RigidPart<dim>& part,
+                        const Point<dim>& about)
 {
   Resultant<dim> result;
-  result.add(part.point - about, part.total_force());
-  result.moment += part.total_moment();
+  result.add(part.point - about, part.total_force() / problem.full_circle());
+  result.moment += part.total_moment() / problem.full_circle();
   return result;
 }
 
@@ -288,13 +290,13 @@ Balance balance(const contact::NitscheForm<dim>& form, std::span<const double> u
       loads.boundaries);
   for (const problem::BoundaryCondition<dim>& boundary : boundaries)
     if (boundary.rigid)
-      result.rows.push_back(
-          row(BalanceKind::load, boundary.name, "rigid part", force_on<dim>(*boundary.rigid, about)));
+      result.rows.push_back(row(BalanceKind::load, boundary.name, "rigid part",
+                                force_on<dim>(problem, *boundary.rigid, about)));
   add(
       BalanceKind::reaction,
       [&](const auto& b, int)
       {
-        if (problem.is_axisymmetric()) return b.clamps(1);
+        if (problem.is_axisymmetric()) return b.rigid ? b.rigid->fixed[1] : b.fixes(1);
         return b.rigid ? b.rigid->fixes_any() : b.fixes_any();
       },
       [](const auto& b) { return b.rigid ? "guide" : "displacement"; }, reactions);

@@ -202,8 +202,8 @@ Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
       "zero where displacements are prescribed" +
           std::string(form.problem().has_rigid_parts() ? " and a rigid motion on each rigid part" : "") +
           (form.problem().is_axisymmetric()
-               ? ", with ||grad v||^2 + ||v_r / r||^2 + sum_F ||v||_F^2 / h_F = 1 over contact facets F, "
-                 "integrals over the meridian with the weight r"
+               ? ", with ||grad v||^2 + ||v_r / r||^2 + sum_F ||v||_F^2 / h_F = 1, integrals over the "
+                 "meridian with the weight r, over contact facets F"
                : ", with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact facets F") +
           std::string(form.problem().has_springs() ? " and those on springs" : "") +
           std::string(form.problem().pairs().empty()

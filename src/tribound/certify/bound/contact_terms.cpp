@@ -359,7 +359,9 @@ ContactSquares ContactTerms<dim>::with_initial_deviation(int k, ContactSquares s
   const double deviation = form_.initial_deviation(k);
   if (deviation == 0) return squares;
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
-  const double missed = std::sqrt(segment.h * segment.measure) * deviation;
+  const double missed =
+      std::sqrt(segment.h * segment.measure * largest_on(k, fem::reference_simplex<dim - 1>()).weight) *
+      deviation;
   squares.cnt = std::pow(std::sqrt(squares.cnt) + missed, 2);
   squares.frc =
       std::pow(std::sqrt(squares.frc) + (1 + problem::cone(segment.contact->law).coefficient) * missed, 2);

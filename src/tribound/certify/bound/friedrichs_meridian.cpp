@@ -138,7 +138,7 @@ class Paths
       const auto& condition = problem_.boundary(facet.tag);
       const bool is_fixed = condition.clamps(1);
       const double length = weighted_length(facet.cell, facet.local);
-      if (length == 0 || !(is_fixed || condition.contact)) continue;
+      if (length == 0 || !(is_fixed || condition.is_in_norm())) continue;
       const double root =
           is_fixed ? 0 : mesh::facet_geometry(mesh_, facet.cell, facet.local).diameter / length;
       const double entry = crossing(facet.cell, facet.local);

@@ -8,6 +8,7 @@
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/polynomials.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -15,11 +16,12 @@ namespace tribound::certify
 namespace
 {
 
-/// The degree of the squares, as multiples of 1 / r: of r sigma and tau in P^{p+1}, and of r^2 f_h.
+/// The degree of the squares, as multiples of 1 / r: of r sigma and tau in P^{p+1}, r sigma_0 in P^{p+2}, and
+/// of r^2 f_h.
 int degree_of_squares(const contact::NitscheForm<2>& form)
 {
   const int p = form.space().degree();
-  int degree = p + 1;
+  int degree = p + (form.problem().has_initial_stress() ? 2 : 1);
   for (const problem::Region<2>& region : form.problem().regions())
     for (const problem::Field& f : region.body_force)
       if (!f.is_zero()) degree = std::max(degree, 2 + std::min(f.degree(), p + 6));
@@ -96,6 +98,22 @@ auto MeridianTerms::rows_at(const Table& table, const SortedCell<2>& cell, std::
   return rows;
 }
 
+/// The first table is that of the cell's own coordinates.
+auto MeridianTerms::initial_at(const Table& table, Index cell, int q) const -> InitialStress
+{
+  const contact::InitialStress<2>& given = form_.data().initial_stress();
+  const std::span<const Tensor<2>> plane = given.coefficients(cell);
+  const std::span<const double> hoop = given.hoop_coefficients(cell);
+  const std::span<const double> theta = table.stress.front().values_at(q);
+  InitialStress sum;
+  for (std::size_t j = 0; j < plane.size(); ++j)
+  {
+    sum.plane += theta[j] * plane[j];
+    sum.hoop += theta[j] * hoop[j];
+  }
+  return sum;
+}
+
 void MeridianTerms::add(Index cell, std::span<const double> u, const Stress<2>& stress, double rho_z,
                         BoundComponents& eta) const
 {
@@ -120,16 +138,19 @@ void MeridianTerms::add(Index cell, std::span<const double> u, const Stress<2>& 
     const double divergence = dis.divergence[1] +
                               rows_at(table, sorted, stress.lin_in(cell), q).divergence[1] +
                               rows_at(table, sorted, stress.reg_in(cell), q).divergence[1];
-    in_plane += dx / r * (dis.tau - r * contact::sigma<2>(material, gradient, hoop_strain)).squaredNorm();
-    hoop +=
-        dx * r *
-        std::pow(dis.divergence[0] + r * force[q][0] - contact::hoop_stress(material, gradient, hoop_strain),
-                 2);
+    const InitialStress initial = initial_at(table, cell, q);
+    const Tensor<2> sigma = contact::sigma<2>(material, gradient, hoop_strain) + initial.plane;
+    const double sigma_tt = contact::hoop_stress(material, gradient, hoop_strain) + initial.hoop;
+    in_plane += dx / r * (dis.tau - r * sigma).squaredNorm();
+    hoop += dx * r * std::pow(dis.divergence[0] + r * force[q][0] - sigma_tt, 2);
     oscillation += dx / r * std::pow(r * (force[q][1] - rho_z) + divergence, 2);
   }
   const double most = 1 + rules_.relative_error(cell);
   eta.osc += poincare_constant(mesh::cell_diameter(space.mesh(), cell)) * std::sqrt(most * oscillation);
-  eta.str = std::sqrt(most * (in_plane + hoop));
+  eta.str = std::sqrt(most * (in_plane + hoop)) +
+            std::sqrt(problem::largest_weight<2>(
+                form_.problem(), mesh::points_of(space.mesh().vertices(), space.mesh().cell(cell)))) *
+                form_.data().initial_stress().remainder(cell).oscillation;
   eta.lin1 = std::sqrt(square(cell, stress.lin_in(cell)));
   eta.reg1 = std::sqrt(square(cell, stress.reg_in(cell)));
 }

@@ -21,7 +21,8 @@ namespace tribound::certify
 
 /// With the rows tau = r sigma_h of the stress, s_tt = div tau_r + r f_{h,r} of tau_dis, h = u_r / r,
 ///     osc = (h_T / pi) ||r^{-1/2} (r f_{h,z} + div tau_z - r rho_z)||, tau = tau_dis + tau_lin + tau_reg,
-///     str^2 = ||r^{-1/2} (tau_dis - r sigma(u))||^2 + ||r^{1/2} (s_tt - sigma_tt(u))||^2,
+///     str^2 = ||r^{-1/2} (tau_dis - r sigma(u))||^2 + ||r^{1/2} (s_tt - sigma_tt(u))||^2, with what the
+///             projection of the initial stress leaves out added to str,
 ///     lin1^2 = ||r^{-1/2} tau_lin||^2 + ||r^{1/2} div tau_{lin,r}||^2, reg1 likewise,
 /// because with v_r / r among the strains
 ///     R(v) = (r f_z + div tau_z, v_z) + (tau - r sigma(u), grad v) + (s_tt - sigma_tt(u), v_r) + ...
@@ -54,6 +55,14 @@ class MeridianTerms
 
   [[nodiscard]] Rows rows_at(const Table& table, const SortedCell<2>& cell, std::span<const double> block,
                              int q) const;
+  struct InitialStress
+  {
+    Tensor<2> plane = Tensor<2>::Zero();
+    double hoop = 0;
+  };
+  /// Its projection on P^{p+1} at a point of the rule of a cell.
+  [[nodiscard]] InitialStress initial_at(const Table& table, Index cell, int q) const;
+
   const contact::NitscheForm<2>& form_;
   fem::MeridianRules rules_;
   std::vector<Table> tables_;  ///< of each rule

@@ -8,8 +8,10 @@
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/bound/checked_stress.h"
+#include "tribound/certify/bound/constants.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -18,7 +20,7 @@ namespace
 {
 
 /// The forces on the parts in chi_i: given, less those of the stress; the sum of the absolute values of
-/// what they consist of; and (chi_i, chi_j)_S by columns.
+/// what they consist of; and (chi_i, chi_j)_S by columns. On a meridian the stress is tau = r sigma_h.
 template <int dim>
 struct PartForces
 {
@@ -48,7 +50,7 @@ struct PartForces
         const Eigen::VectorXd work = dx * (chi.transpose() * sigma.normal_trace_at(x, normal));
         sums.segment(first, m) += work;
         sums[n] += work.cwiseAbs().sum();
-        products.block(first, first, m, m) += dx * chi.transpose() * chi;
+        products.block(first, first, m, m) += form.problem().weight(x) * dx * chi.transpose() * chi;
       }
     }
     mesh.ranks().sum(std::span(sums.data(), sums.size()));
@@ -83,6 +85,23 @@ std::array<double, 2> lifted(const mesh::Mesh<dim>& mesh, const mesh::BoundaryFa
   return {std::sqrt(std::max(0.0, square)), std::sqrt(measure) * divergence.norm()};
 }
 
+/// On a meridian, where t is a constant along z: with the means m of v_z, int_F r t v_z = t |F|_r m_F is at
+/// most t |F|_r (c_{T,F} ||grad v||_r + |T|_r^{-1/2} ||v||_r) on the cell T; these two factors.
+std::array<double, 2> by_means(const contact::NitscheForm<2>& form, const mesh::BoundaryFacet& facet,
+                               const Point<2>& t)
+{
+  const mesh::Mesh<2>& mesh = form.space().mesh();
+  const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
+  const double length = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+  const double area = mesh::cell_map(mesh, facet.cell).measure();
+  const double on_facet =
+      length * problem::mean_weight<2>(form.problem(), mesh::points_of(mesh.vertices(), vertices));
+  const double in_cell =
+      area * problem::mean_weight<2>(form.problem(), mesh::points_of(mesh.vertices(), mesh.cell(facet.cell)));
+  const double trace = meridian_trace_constant(mesh::cell_diameter(mesh, facet.cell), length, area);
+  return {t.norm() * std::sqrt(on_facet) * trace, t.norm() * on_facet / std::sqrt(in_cell)};
+}
+
 }  // namespace
 
 template <int dim>
@@ -107,7 +126,11 @@ double rigid_remainder(const contact::NitscheForm<dim>& form, const Stress<dim>&
     std::array<Point<dim>, dim> t;
     const auto vertices = mesh::facet_vertices(mesh.cell(facet.cell), facet.local);
     for (int a = 0; a < dim; ++a) t[a] = part->at(mesh.vertex(vertices[a])) * of_part;
-    const std::array<double, 2> norms = lifted<dim>(mesh, facet, t);
+    std::array<double, 2> norms{};
+    if constexpr (dim == 2)
+      norms = form.problem().is_axisymmetric() ? by_means(form, facet, t[0]) : lifted<dim>(mesh, facet, t);
+    else
+      norms = lifted<dim>(mesh, facet, t);
     for (std::size_t i = 0; i < norms.size(); ++i) cells[facet.cell][i] += norms[i];
   }
   std::array<double, 2> squares{};

@@ -72,7 +72,7 @@ typename Stress<dim>::Tractions tractions_of(const contact::NitscheForm<dim>& fo
                                              std::span<const Point<dim>> t, double delta)
 {
   typename Stress<dim>::Tractions tractions{form.traction(u), {t.begin(), t.end()}, {}};
-  auto& [dis, lin, reg, springs] = tractions;  // FacetData adds those of springs
+  auto& [dis, lin, reg, springs] = tractions;  // FacetData and MeridianFacets add those of springs
   if (delta > 0) reg = form.traction(u, delta);
   for (std::size_t i = 0; i < lin.size(); ++i) lin[i] -= delta > 0 ? reg[i] : dis[i];
   for (std::size_t i = 0; i < reg.size(); ++i) reg[i] -= dis[i];

@@ -150,7 +150,8 @@ auto MeridianCellSource::turning_in_cell(const SortedCell<2>& cell, std::span<co
 void MeridianCellSource::find_stress(MeridianCell& cell, Index c, std::span<const double> u) const
 {
   const int m = reference().n_divergence;
-  const MeridianFields::WeightedStress stress = fields_.stress(c, cell.sorted, u);
+  MeridianFields::WeightedStress stress = fields_.stress(c, cell.sorted, u);
+  fields_.add_initial_stress(c, cell.sorted, stress);
   cell.sigma = stress.plane;
   for (int row = 0; row < 2; ++row)
   {
@@ -184,10 +185,7 @@ void MeridianCellSource::find_body_moments(MeridianCell& cell, Index c, int perm
     }
   }
   if (!cell.has_edge_on_axis) return;
-  const int n = fem::polynomial_dimension(2, form_.space().degree() - 1);
-  const CholeskyFactors radius(cell.basis.topLeftCorner(n, n));
-  for (Eigen::VectorXd& moments : cell.body[1])
-    moments = cell.basis.topLeftCorner(moments.size(), n) * radius.solve(moments.head(n));
+  for (Eigen::VectorXd& moments : cell.body[1]) project(cell, moments);
 }
 
 }  // namespace tribound::certify

@@ -41,9 +41,11 @@ struct MeridianCell
   std::array<Eigen::VectorXd, 3> load;
   /// The inverse of (r ., .) on P^p.
   Eigen::MatrixXd compliance;
-  double radius_integral;                               ///< of r
-  Eigen::VectorXd radius_moment;                        ///< of r on P^p
-  std::array<std::array<Eigen::VectorXd, 2>, 2> sigma;  ///< [row][component]: r sigma(u) in P^p
+  double radius_integral;         ///< of r
+  Eigen::VectorXd radius_moment;  ///< of r on P^p
+  /// [row][component]: r sigma(u) in P^p. The initial stress, as all moments on P^p see r sigma_0; on cells
+  /// with an edge on the axis r times its projection with the weight r onto P^{p-1}.
+  std::array<std::array<Eigen::VectorXd, 2>, 2> sigma;
   /// r div (r sigma_r(u)) - r sigma_tt(u) and div (r sigma_z(u)) in P^p
   std::array<Eigen::VectorXd, 2> residual;
   /// [row][vertex]: moments on P^p of psi_a r^2 f_r and of psi_a r f_z. On cells with an edge on the axis the

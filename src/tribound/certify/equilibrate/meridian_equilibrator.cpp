@@ -164,7 +164,7 @@ class MeridianEquilibrator : public Equilibrator<2>::Implementation
   {
     assert(turning.empty() || !source_.is_by_rows());
     const mesh::Mesh<2>& mesh = form_.space().mesh();
-    const MeridianFacets facets(form_, source_.reference(), std::move(tractions));
+    const MeridianFacets facets(form_, source_.reference(), u, std::move(tractions));
     std::optional<VertexPartition>& partition = with_dis ? all_ : on_contact_;
     if (!partition)
     {

@@ -10,7 +10,7 @@ namespace tribound::certify
 {
 
 MeridianFacets::MeridianFacets(const contact::NitscheForm<2>& form, const MeridianReference& reference,
-                               Stress<2>::Tractions tractions)
+                               std::span<const double> u, Stress<2>::Tractions tractions)
     : form_(form),
       reference_(reference),
       tractions_(std::move(tractions)),
@@ -22,21 +22,31 @@ MeridianFacets::MeridianFacets(const contact::NitscheForm<2>& form, const Meridi
       on_contact_(form.space().mesh().n_vertices(), 0)
 {
   const mesh::Mesh<2>& mesh = form.space().mesh();
-  const fem::Quadrature<1>& rule = form.facet_rule();
-  std::vector<Point<2>> load(rule.size());
   for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[number];
     number_[mesh.topology().cell_facets[facet.cell][facet.local]] = static_cast<int>(number);
-    if (!form.data().has_traction(number)) continue;
-    form.data().traction(number, load);
-    Ends& moments = traces_of(number, 0);
-    for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
-      add(facet, rule.points[q], x[0] * dx, load[q], moments);
+    add_load(number, u);
   }
   for (std::size_t k = 0; k < form.segments().size(); ++k)
     form.segments()[k].for_each_side([&](const contact::SegmentSide<2>& side) { add_contact(k, side); });
   project();
+}
+
+void MeridianFacets::add_load(std::size_t number, std::span<const double> u)
+{
+  const contact::SpringFacet<2>* const spring = form_.springs().on(number);
+  if (spring == nullptr && !form_.data().has_traction(number)) return;
+  const mesh::Mesh<2>& mesh = form_.space().mesh();
+  const mesh::BoundaryFacet& facet = mesh.boundary()[number];
+  const fem::Quadrature<1>& rule = form_.facet_rule();
+  std::vector<Point<2>> load(rule.size());
+  form_.data().traction(number, load);
+  for (int q = 0; spring != nullptr && q < rule.size(); ++q)
+    load[q] += tractions_.springs.emplace_back(form_.springs().traction(*spring, u, q));
+  Ends& moments = traces_of(number, 0);
+  for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
+    add(facet, rule.points[q], x[0] * dx, load[q], moments);
 }
 
 bool MeridianFacets::fixes(Index facet, int component) const

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tribound/certify/equilibrate/meridian_cell.h"
@@ -19,9 +20,10 @@ namespace tribound::certify
 class MeridianFacets
 {
  public:
-  /// `tractions`: what the parts of the stress carry on Gamma_C, at the contact points of the form.
+  /// `tractions`: what the parts of the stress carry on Gamma_C, at the contact points of the form; those of
+  /// springs at u are added.
   MeridianFacets(const contact::NitscheForm<2>& form, const MeridianReference& reference,
-                 Stress<2>::Tractions tractions);
+                 std::span<const double> u, Stress<2>::Tractions tractions);
 
   [[nodiscard]] const Stress<2>::Tractions& tractions() const { return tractions_; }
   /// Parts of the stress: dis, lin and reg as far as they have tractions.
@@ -40,6 +42,8 @@ class MeridianFacets
   /// moments += weight psi_v theta_i t at the point s of a boundary facet, theta of degree p.
   void add(const mesh::BoundaryFacet& facet, const Point<1>& s, double weight, const Point<2>& t,
            Ends& moments) const;
+  /// g_N - K (u - u_0).
+  void add_load(std::size_t number, std::span<const double> u);
   void add_contact(std::size_t k, const contact::SegmentSide<2>& side);
   /// From the moments on P^p with the weight r to the coefficients of the projection times r.
   void project();

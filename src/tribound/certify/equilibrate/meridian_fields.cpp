@@ -81,6 +81,8 @@ MeridianFields::MeridianFields(const contact::NitscheForm<2>& form)
       stress_rule_(fem::quadrature<2>(2 * form.space().degree())),
       stress_phi_(tabulate_permuted(form.space().degree(), stress_rule_)),
       stress_tabulation_(form.space().basis().tabulate(stress_rule_.points)),
+      initial_rule_(fem::quadrature<2>(2 * form.space().degree() + 2)),
+      initial_phi_(tabulate_permuted(form.space().degree(), initial_rule_)),
       body_phi_(tabulate_permuted(form.space().degree(), form.data().cell_rule()))
 {
 }
@@ -111,6 +113,37 @@ auto MeridianFields::stress(Index c, const SortedCell<2>& cell, std::span<const 
   return result;
 }
 
+void MeridianFields::add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const
+{
+  const contact::InitialStress<2>& initial = form_.data().initial_stress();
+  if (!initial.acts_on(c)) return;
+  const std::span<const Tensor<2>> plane = initial.coefficients(c);
+  const std::span<const double> hoop = initial.hoop_coefficients(c);
+  const mesh::CellMap<2> map = mesh::cell_map(form_.space().mesh(), c);
+  const Eigen::MatrixXd& phi = initial_phi_[permutation_number(cell.local)];
+  std::array<std::array<Eigen::VectorXd, 2>, 2> moments;
+  for (auto& row : moments) row.fill(Eigen::VectorXd::Zero(phi.cols()));
+  for (int i = 0; i < initial_rule_.size(); ++i)
+  {
+    const Eigen::VectorXd theta =
+        orthonormal_basis_at<2>(form_.space().degree() + 1, initial_rule_.points[i]);
+    const Eigen::VectorXd weighted = initial_rule_.weights[i] * std::sqrt(map.det) *
+                                     map(initial_rule_.points[i])[0] * phi.row(i).transpose();
+    for (std::size_t j = 0; j < plane.size(); ++j)
+    {
+      for (int row = 0; row < 2; ++row)
+        for (int k = 0; k < 2; ++k) moments[row][k] += theta[j] * plane[j](row, k) * weighted;
+      stress.hoop += theta[j] * hoop[j] * weighted;
+    }
+  }
+  const std::array<double, 3> r = radii(cell);
+  for (int row = 0; row < 2; ++row)
+  {
+    if (has_edge_on_axis(r)) project_at_axis(r, moments[row]);
+    for (int k = 0; k < 2; ++k) stress.plane[row][k] += moments[row][k];
+  }
+}
+
 std::array<Eigen::VectorXd, 2> MeridianFields::load(Index c, const SortedCell<2>& cell) const
 {
   std::array<Eigen::VectorXd, 2> result;
@@ -127,12 +160,16 @@ std::array<Eigen::VectorXd, 2> MeridianFields::load(Index c, const SortedCell<2>
     for (int k = 0; k < 2; ++k) result[k] += weight * f[i][k] * phi.row(i).transpose();
   }
   const std::array<double, 3> r = radii(cell);
-  if (!has_edge_on_axis(r)) return result;
+  if (has_edge_on_axis(r)) project_at_axis(r, result);
+  return result;
+}
+
+void MeridianFields::project_at_axis(const std::array<double, 3>& r, std::span<Eigen::VectorXd> moments) const
+{
   const int n = fem::polynomial_dimension(2, form_.space().degree() - 1);
   const Eigen::MatrixXd by_radius = times_radius(r).topLeftCorner(reference_.n_divergence, n);
   const CholeskyFactors radius(by_radius.topRows(n));
-  for (Eigen::VectorXd& moments : result) moments = by_radius * radius.solve(moments.head(n));
-  return result;
+  for (Eigen::VectorXd& component : moments) component = by_radius * radius.solve(component.head(n));
 }
 
 Eigen::MatrixXd MeridianFields::times_radius(const std::array<double, 3>& r) const

@@ -51,6 +51,10 @@ class MeridianFields
   };
   [[nodiscard]] WeightedStress stress(Index c, const SortedCell<2>& cell, std::span<const double> u) const;
 
+  /// Adds r sigma_0 and r sigma_{0,tt} in P^p; on cells with an edge on the axis r times the projection of
+  /// sigma_0 onto P^{p-1} with the weight r.
+  void add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const;
+
   /// The radial and the axial component of r f~ in P^p: the projection of r f; on cells with an edge on the
   /// axis r times the projection of f onto P^{p-1} with the weight r.
   [[nodiscard]] std::array<Eigen::VectorXd, 2> load(Index c, const SortedCell<2>& cell) const;
@@ -62,12 +66,18 @@ class MeridianFields
   [[nodiscard]] const MeridianReference& reference() const { return reference_; }
 
  private:
+  /// On a cell with an edge on the axis, from moments of r f on P^p to those of r times the projection of f
+  /// onto P^{p-1} with the weight r.
+  void project_at_axis(const std::array<double, 3>& r, std::span<Eigen::VectorXd> moments) const;
+
   const contact::NitscheForm<2>& form_;
   MeridianReference reference_;
   fem::Quadrature<2> stress_rule_;
   PermutedTables stress_phi_;             ///< P^p at its points
   fem::Tabulation<2> stress_tabulation_;  ///< the basis of the space there
-  PermutedTables body_phi_;               ///< P^p at the points of the rule of the loads
+  fem::Quadrature<2> initial_rule_;
+  PermutedTables initial_phi_;  ///< P^p at its points
+  PermutedTables body_phi_;     ///< P^p at the points of the rule of the loads
 };
 
 [[nodiscard]] inline bool has_edge_on_axis(const std::array<double, 3>& r)

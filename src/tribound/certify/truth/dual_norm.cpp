@@ -118,8 +118,9 @@ void DualNorm<dim>::find_operators()
     op.solver = std::make_unique<algebra::LinearSolver>(direct, std::span<const Point<dim>>(),
                                                         algebra::MatrixKind::positive_definite);
   }
-  if (parts_.size() > 0)
-    whole_ = std::make_unique<algebra::SparseMatrix>(matrix(std::vector<char>(space_.n_nodes(), 0), 0));
+  if (parts_.size() == 0) return;
+  const int n_whole = form_.problem().is_axisymmetric() ? dim : 1;
+  for (int a = 0; a < n_whole; ++a) whole_.push_back(matrix(std::vector<char>(space_.n_nodes(), 0), a));
 }
 
 /// (grad phi_j, grad phi_i) + sum_k (1/h_k) ([phi_j], [phi_i])_k + sum_F (1/h_F) (phi_j, phi_i)_F between
@@ -175,7 +176,8 @@ algebra::SparseMatrix DualNorm<dim>::matrix(const std::vector<char>& fixed, int 
 template <int dim>
 void DualNorm<dim>::add_springs(const std::vector<char>& fixed, algebra::Triplets& entries) const
 {
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(2 * space_.degree());
+  const int exact = 2 * space_.degree() + (form_.problem().is_axisymmetric() ? 1 : 0);
+  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(exact);
   const fem::FacetTabulation<dim> tables = fem::tabulate_on_facets<dim>(space_.basis(), rule.points);
   const auto n = static_cast<std::size_t>(space_.basis().n_nodes());
   std::vector<double> block(n * n);
@@ -189,7 +191,8 @@ void DualNorm<dim>::add_springs(const std::vector<char>& fixed, algebra::Triplet
     {
       const std::span<const double> phi = tables.on_facet[facet.local].values_at(q);
       for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) block[i * n + j] += dx / h * phi[i] * phi[j];
+        for (std::size_t j = 0; j < n; ++j)
+          block[i * n + j] += form_.problem().weight(x) * dx / h * phi[i] * phi[j];
     }
     add_block(space_.cell_nodes(facet.cell), fixed, block, entries);
   }
@@ -236,7 +239,7 @@ std::vector<double> DualNorm<dim>::residual(std::span<const double> u)
     const contact::DiscreteData<dim> data(form_.problem(), refined_.mesh, space_.degree(), {},
                                           {.share = share});
     load_ = contact::assemble_load(data, space_);
-    contact::add_initial_stress<dim>(data, space_, load_);
+    contact::add_initial_stress<dim>(data, space_, load_, meridian_);
     springs_.add_rest(load_);
     parts_.add_load(load_);
   }
@@ -283,7 +286,9 @@ std::vector<double> DualNorm<dim>::product(std::span<const double> z) const
     for (const int a : op.components)
     {
       for (Index i = 0; i < space_.n_nodes(); ++i) component[i] = z[dim * i + a];
-      const std::vector<double> az = (whole_ ? *whole_ : *op.matrix).multiply(component);
+      const algebra::SparseMatrix& of_component =
+          whole_.empty() ? *op.matrix : whole_[whole_.size() == 1 ? 0 : a];
+      const std::vector<double> az = of_component.multiply(component);
       for (Index i = 0; i < space_.n_nodes(); ++i) result[dim * i + a] = az[i];
     }
   return result;

@@ -100,7 +100,8 @@ class DualNorm
   std::vector<double> load_;  ///< L(phi_i) + (K u_0, phi_i)_S; computed when first needed
   std::vector<RefinedSegment<dim>> segments_;
   std::vector<Operator> operators_;
-  std::unique_ptr<algebra::SparseMatrix> whole_;  ///< without fixed nodes; with rigid parts
+  /// Without fixed nodes, of each component of axisymmetric problems, else of all; with rigid parts.
+  std::vector<algebra::SparseMatrix> whole_;
 };
 
 /// bound / dual_norm, at least 1 by the theorem; nothing if both are below norms.round_off or 1e-10

@@ -87,7 +87,8 @@ double effect_of_loads(const problem::Problem<dim>& problem, const mesh::Mesh<di
     body += map.measure * std::pow(largest_value(body_datum(problem, mesh, c), map), 2);
     volume += map.measure;
     if (const int region = mesh.region(c); problem.regions()[region].has_initial_stress())
-      initial += map.measure * std::pow(largest_value(initial_stress_datum(problem, region), map), 2);
+      initial += map.measure * (std::pow(largest_value(initial_stress_datum(problem, region), map), 2) +
+                                std::pow(largest_value(initial_hoop_datum(problem, region), map), 2));
     const problem::Material& material = problem.material(mesh.region(c));
     stiffest = std::max(stiffest, material.lambda + 2 * material.mu);
   }

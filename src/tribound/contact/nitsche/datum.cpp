@@ -33,8 +33,10 @@ bool Datum<dim, n>::is_enclosed() const
 }
 
 template struct Datum<2>;
+template struct Datum<2, 1>;
 template struct Datum<2, 3>;
 template struct Datum<3>;
+template struct Datum<3, 1>;
 template struct Datum<3, 6>;
 
 }  // namespace tribound::contact

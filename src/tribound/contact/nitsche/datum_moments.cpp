@@ -322,9 +322,11 @@ Point<n> DatumMoments<k, dim, n>::evaluate(std::span<const Point<n>> moments, co
 template class DatumMoments<1, 2>;
 template class DatumMoments<1, 2, 3>;
 template class DatumMoments<2, 2>;
+template class DatumMoments<2, 2, 1>;
 template class DatumMoments<2, 2, 3>;
 template class DatumMoments<2, 3>;
 template class DatumMoments<3, 3>;
+template class DatumMoments<3, 3, 1>;
 template class DatumMoments<3, 3, 6>;
 
 }  // namespace tribound::contact

@@ -23,13 +23,6 @@ constexpr double all_values = 2e7;
 constexpr double fewest_parts = 64;
 constexpr double most_parts_of_facet = 4096;
 
-/// The degree to which the rules are exact. With the weight r there are products with r, and quotients by it.
-template <int dim>
-int exactness(const problem::Problem<dim>& problem, int degree)
-{
-  return fem::data_quadrature_degree(problem.is_axisymmetric() ? degree + 4 : degree);
-}
-
 /// A lower bound of the gap on the parts of a segment; -HUGE_VAL if there is none.
 template <int dim>
 double smallest_gap(const problem::Field& gap, const SimplexMap<dim - 1, dim>& map,
@@ -65,14 +58,21 @@ void limit_gap(const DatumMoments<dim - 1, dim, 3>& method, double smallest, std
 }  // namespace
 
 template <int dim>
+int data_exactness(const problem::Problem<dim>& problem, int degree)
+{
+  return fem::data_quadrature_degree(problem.is_axisymmetric() ? degree + 4 : degree);
+}
+
+template <int dim>
 DiscreteData<dim>::DiscreteData(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int degree,
                                 Segments segments, const DataAccuracy& accuracy)
     : problem_(problem),
       mesh_(mesh),
       degree_(degree),
-      cell_moments_(degree, problem.is_axisymmetric() ? degree + 1 : degree - 1, exactness(problem, degree)),
-      facet_moments_(degree, degree, exactness(problem, degree)),
-      contact_moments_(degree, degree, exactness(problem, degree)),
+      cell_moments_(degree, problem.is_axisymmetric() ? degree + 1 : degree - 1,
+                    data_exactness(problem, degree)),
+      facet_moments_(degree, degree, data_exactness(problem, degree)),
+      contact_moments_(degree, degree, data_exactness(problem, degree)),
       size_(mesh::box_around(mesh).diagonal())
 {
   count_formulas(segments);
@@ -129,8 +129,14 @@ void DiscreteData<dim>::count_formulas(Segments segments)
   for (Index c = 0; c < mesh_.n_owned_cells(); ++c)
   {
     if (!problem_.body_force_is_constant(mesh_.region(c))) count(body_datum(problem_, mesh_, c), true);
-    if (problem_.regions()[mesh_.region(c)].has_initial_stress())
-      count(initial_stress_datum(problem_, mesh_.region(c)), true);
+    if (const int region = mesh_.region(c); problem_.regions()[region].has_initial_stress())
+    {
+      const Datum<dim, 1> hoop = initial_hoop_datum(problem_, region);
+      if (const auto datum = initial_stress_datum(problem_, region); datum.degree() >= hoop.degree())
+        count(datum, true);
+      else
+        count(hoop, true);
+    }
   }
   for (const mesh::BoundaryFacet& facet : mesh_.owned_boundary())
   {
@@ -333,6 +339,8 @@ std::span<const ContactDatumPart<dim>> DiscreteData<dim>::contact_parts(std::siz
   return found == contact_parts_.end() ? std::span<const ContactDatumPart<dim>>() : found->second;
 }
 
+template int data_exactness(const problem::Problem<2>&, int);
+template int data_exactness(const problem::Problem<3>&, int);
 template class DiscreteData<2>;
 template class DiscreteData<3>;
 

@@ -66,13 +66,17 @@ struct DataEffort
   std::int64_t unenclosed = 0;  ///< cells and facets with functions that are known only at points
 };
 
-/// Values are given at the points of the rules exact to data_quadrature_degree(p), of axisymmetric problems
-/// data_quadrature_degree(p + 4), in the order of the rule in the reference coordinates of Mesh::cell; on
-/// contact segments in their own coordinates. If a formula is subdivided, they are those of the polynomial of
-/// degree p + 1 with the same moments. A threshold is not below 0, and a gap not below its smallest value:
-/// its polynomial is made flatter, with the same mean. Boundary facets have their numbers in
-/// Mesh::boundary(). Keeps references to problem and mesh. Several ranks construct it together; ghosts have
-/// data, too.
+/// The degree to which the rules for data are exact: data_quadrature_degree(p), of axisymmetric problems
+/// data_quadrature_degree(p + 4), since with the weight r there are products with r, and quotients by it.
+template <int dim>
+[[nodiscard]] int data_exactness(const problem::Problem<dim>& problem, int degree);
+
+/// Values are given at the points of the rules exact to data_exactness(), in the order of the rule in the
+/// reference coordinates of Mesh::cell; on contact segments in their own coordinates. If a formula is
+/// subdivided, they are those of the polynomial of degree p + 1 with the same moments. A threshold is not
+/// below 0, and a gap not below its smallest value: its polynomial is made flatter, with the same mean.
+/// Boundary facets have their numbers in Mesh::boundary(). Keeps references to problem and mesh. Several
+/// ranks construct it together; ghosts have data, too.
 template <int dim>
 class DiscreteData
 {

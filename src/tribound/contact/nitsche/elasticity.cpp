@@ -181,8 +181,12 @@ StressNorms stress_norms(const problem::Problem<dim>& problem, const fem::Lagran
   {
     if (meridian)
     {
-      const auto [energy, sigma_squared, terms] = meridian->squares(static_cast<Index>(c), u);
-      return Eigen::Array3d(energy, sigma_squared, terms);
+      if constexpr (dim == 2)
+      {
+        const auto [energy, sigma_squared, terms] =
+            meridian->squares(static_cast<Index>(c), u, is_stressed ? &data->initial_stress() : nullptr);
+        return Eigen::Array3d(energy, sigma_squared, terms);
+      }
     }
     const mesh::CellMap<dim> map = mesh::cell_map(mesh, static_cast<Index>(c));
     const problem::Material& material = problem.material(mesh.region(static_cast<Index>(c)));
@@ -257,9 +261,17 @@ std::vector<double> cell_energies(const problem::Problem<dim>& problem, const fe
 /// Only Pi^{p-1} sigma_0 counts, since grad phi is in P^{p-1}.
 template <int dim>
 void add_initial_stress(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space,
-                        std::span<double> vector)
+                        std::span<double> vector, const std::shared_ptr<const MeridianCells>& known)
 {
+  if (!data.problem().has_initial_stress()) return;
   const mesh::Mesh<dim>& mesh = space.mesh();
+  if constexpr (dim == 2)
+    if (const auto meridian = known ? known : meridian_cells(data.problem(), space))
+    {
+      for (Index c = 0; c < mesh.n_cells(); ++c)
+        if (data.initial_stress().acts_on(c)) meridian->add_initial_forces(c, data.initial_stress(), vector);
+      return;
+    }
   const int degree = space.degree() - 1;
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(2 * degree);
   const fem::Tabulation<dim> table = space.basis().tabulate(rule.points);
@@ -302,8 +314,10 @@ template std::vector<double> cell_energies(const problem::Problem<2>&, const fem
 template std::vector<double> cell_energies(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
                                            std::span<const double>,
                                            const std::shared_ptr<const MeridianCells>&);
-template void add_initial_stress(const DiscreteData<2>&, const fem::LagrangeSpace<2>&, std::span<double>);
-template void add_initial_stress(const DiscreteData<3>&, const fem::LagrangeSpace<3>&, std::span<double>);
+template void add_initial_stress(const DiscreteData<2>&, const fem::LagrangeSpace<2>&, std::span<double>,
+                                 const std::shared_ptr<const MeridianCells>&);
+template void add_initial_stress(const DiscreteData<3>&, const fem::LagrangeSpace<3>&, std::span<double>,
+                                 const std::shared_ptr<const MeridianCells>&);
 template std::vector<double> assemble_load(const DiscreteData<2>&, const fem::LagrangeSpace<2>&);
 template std::vector<double> assemble_load(const DiscreteData<3>&, const fem::LagrangeSpace<3>&);
 

@@ -103,7 +103,8 @@ template <int dim>
 /// vector_i -= (sigma_0, grad phi_i) for every degree of freedom; incomplete at ghosts.
 template <int dim>
 void add_initial_stress(const DiscreteData<dim>& data, const fem::LagrangeSpace<dim>& space,
-                        std::span<double> vector);
+                        std::span<double> vector,
+                        const std::shared_ptr<const MeridianCells>& meridian = nullptr);
 
 /// (f, phi_i) + (g_N, phi_i)_N for every degree of freedom, fixed ones included;
 /// incomplete at ghosts. The data are those for the degree of the space.

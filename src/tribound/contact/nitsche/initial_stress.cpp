@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/datum_moments.h"
@@ -63,6 +64,20 @@ Datum<dim, problem::n_symmetric<dim>> initial_stress_datum(const problem::Proble
   return datum;
 }
 
+template <int dim>
+Datum<dim, 1> initial_hoop_datum(const problem::Problem<dim>& problem, int region)
+{
+  if (!problem.is_axisymmetric()) return {};
+  const problem::Region<dim>& r = problem.regions()[region];
+  const double beta = thermal_modulus(r.material);
+  Datum<dim, 1> datum;
+  if (beta != 0 && !r.temperature.is_zero()) datum.terms.push_back({&r.temperature, Point<1>(-beta)});
+  if (beta != 0 && !r.reference_temperature.is_zero())
+    datum.terms.push_back({&r.reference_temperature, Point<1>(beta)});
+  if (!r.initial_stress_zz.is_zero()) datum.terms.push_back({&r.initial_stress_zz, Point<1>(1.0)});
+  return datum;
+}
+
 double StressRemainder::added_to(double norm) const
 {
   return std::hypot(norm + projection, oscillation);
@@ -86,10 +101,14 @@ void InitialStress<dim>::represent_constants(const problem::Problem<dim>& proble
   for (std::size_t r = 0; r < of_region_.size(); ++r)
   {
     const Datum<dim, problem::n_symmetric<dim>> datum = initial_stress_datum(problem, static_cast<int>(r));
-    acts_.push_back(datum.terms.empty() ? 0 : 1);
-    const bool is_constant =
-        std::ranges::all_of(datum.terms, [](const auto& term) { return term.value->is_constant(); });
-    if (is_constant && acts_.back() != 0) of_region_[r] = {one * tensor_of<dim>(datum(Point<dim>::Zero()))};
+    const Datum<dim, 1> hoop = initial_hoop_datum(problem, static_cast<int>(r));
+    acts_.push_back(datum.terms.empty() && hoop.terms.empty() ? 0 : 1);
+    const auto is_constant = [](const auto& term) { return term.value->is_constant(); };
+    if (acts_.back() == 0 || !std::ranges::all_of(datum.terms, is_constant) ||
+        !std::ranges::all_of(hoop.terms, is_constant))
+      continue;
+    of_region_[r].plane = {one * tensor_of<dim>(datum(Point<dim>::Zero()))};
+    if (problem.is_axisymmetric()) of_region_[r].hoop = {one * hoop(Point<dim>::Zero())[0]};
   }
 }
 
@@ -97,11 +116,15 @@ template <int dim>
 void InitialStress<dim>::represent(const problem::Problem<dim>& problem, int degree, double density,
                                    int max_parts)
 {
-  const auto varies = [this](Index cell) { return acts_on(cell) && of_region_[mesh_->region(cell)].empty(); };
+  const auto varies = [this](Index cell)
+  { return acts_on(cell) && of_region_[mesh_->region(cell)].plane.empty(); };
   bool any = false;
   for (Index c = 0; c < mesh_->n_cells() && !any; ++c) any = varies(c);
   if (!any) return;
-  const DatumMoments<dim, dim, problem::n_symmetric<dim>> moments(degree, degree);
+  const DatumMoments<dim, dim, problem::n_symmetric<dim>> moments(
+      degree, degree + (problem.is_axisymmetric() ? 1 : 0));
+  std::optional<DatumMoments<dim, dim, 1>> around_axis;
+  if (problem.is_axisymmetric()) around_axis.emplace(degree, degree + 1);
   of_cell_.resize(mesh_->n_cells());
   remainders_.resize(mesh_->n_cells());
   parallel_for(of_cell_.size(),
@@ -109,30 +132,45 @@ void InitialStress<dim>::represent(const problem::Problem<dim>& problem, int deg
                {
                  const auto c = static_cast<Index>(i);
                  if (!varies(c)) return;
-                 const SimplexMap<dim, dim> map = simplex_map(*mesh_, c);
-                 const auto found = moments(initial_stress_datum(problem, mesh_->region(c)), map, {1, 0},
-                                            density * std::sqrt(map.measure), max_parts);
-                 double missed = 0;
-                 for (const auto& part : found.parts)
-                   missed += 4 * part.remainder.squaredNorm() * map.measure * fem::fraction<dim>(part.part);
-                 remainders_[i] = {found.oscillation, std::sqrt(missed)};
-                 of_cell_[i].reserve(found.moments.size());
-                 for (const auto& entries : found.moments) of_cell_[i].push_back(tensor_of<dim>(entries));
-                 if (!found.is_subdivided() || c >= mesh_->n_owned_cells()) return;
-#pragma omp critical(tribound_initial_stress)
-                 {
-                   ++subdivided_;
-                   parts_ += static_cast<std::int64_t>(found.parts.size());
-                 }
+                 const int region = mesh_->region(c);
+                 represent(moments, initial_stress_datum(problem, region), c, density, max_parts,
+                           [&](const auto& entries)
+                           { of_cell_[i].plane.push_back(tensor_of<dim>(entries)); });
+                 if (around_axis)
+                   represent(*around_axis, initial_hoop_datum(problem, region), c, density, max_parts,
+                             [&](const auto& entry) { of_cell_[i].hoop.push_back(entry[0]); });
                });
 }
 
 template <int dim>
-std::span<const Tensor<dim>> InitialStress<dim>::coefficients(Index cell) const
+template <class Moments, class Datum, class Set>
+void InitialStress<dim>::represent(const Moments& moments, const Datum& datum, Index cell, double density,
+                                   int max_parts, const Set& set)
 {
-  if (!acts_on(cell)) return {};
-  const std::vector<Tensor<dim>>& constant = of_region_[mesh_->region(cell)];
-  return constant.empty() ? of_cell_[cell] : constant;
+  const SimplexMap<dim, dim> map = simplex_map(*mesh_, cell);
+  const auto found = moments(datum, map, {1, 0}, density * std::sqrt(map.measure), max_parts);
+  double missed = 0;
+  for (const auto& part : found.parts)
+    missed += 4 * part.remainder.squaredNorm() * map.measure * fem::fraction<dim>(part.part);
+  StressRemainder& remainder = remainders_[cell];
+  remainder = {std::hypot(remainder.oscillation, found.oscillation),
+               std::hypot(remainder.projection, std::sqrt(missed))};
+  std::ranges::for_each(found.moments, set);
+  if (!found.is_subdivided() || cell >= mesh_->n_owned_cells()) return;
+#pragma omp critical(tribound_initial_stress)
+  {
+    ++subdivided_;
+    parts_ += static_cast<std::int64_t>(found.parts.size());
+  }
+}
+
+template <int dim>
+auto InitialStress<dim>::of(Index cell) const -> const Coefficients&
+{
+  static const Coefficients none;
+  if (!acts_on(cell)) return none;
+  const Coefficients& constant = of_region_[mesh_->region(cell)];
+  return constant.plane.empty() ? of_cell_[cell] : constant;
 }
 
 template <int dim>
@@ -182,6 +220,8 @@ double initial_traction_deviation(const problem::Problem<dim>& problem, const me
 
 template Datum<2, 3> initial_stress_datum(const problem::Problem<2>&, int);
 template Datum<3, 6> initial_stress_datum(const problem::Problem<3>&, int);
+template Datum<2, 1> initial_hoop_datum(const problem::Problem<2>&, int);
+template Datum<3, 1> initial_hoop_datum(const problem::Problem<3>&, int);
 template class InitialStress<2>;
 template class InitialStress<3>;
 template Point<2> initial_traction(const problem::Problem<2>&, const mesh::Mesh<2>&, const ContactSegment<2>&,

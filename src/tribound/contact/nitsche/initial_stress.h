@@ -20,11 +20,16 @@ template <int dim>
 [[nodiscard]] Datum<dim, problem::n_symmetric<dim>> initial_stress_datum(const problem::Problem<dim>& problem,
                                                                          int region);
 
-/// What is lost when sigma_0 is replaced by its projection on P^p on a cell.
+/// The entry of sigma_0 around the axis of an axisymmetric problem; without terms for others.
+template <int dim>
+[[nodiscard]] Datum<dim, 1> initial_hoop_datum(const problem::Problem<dim>& problem, int region);
+
+/// What is lost when sigma_0 is replaced by its projection on P^p on a cell, of axisymmetric problems on
+/// P^{p+1} and without the weight r.
 struct StressRemainder
 {
-  double oscillation = 0;  ///< >= ||sigma_0 - Pi^p sigma_0||, Pi^p with the moments by rules
-  double projection = 0;   ///< >= the distance of Pi^p by rules from the exact one; 0 for polynomials
+  double oscillation = 0;  ///< >= ||sigma_0 - Pi sigma_0||, Pi with the moments by rules
+  double projection = 0;   ///< >= the distance of Pi by rules from the exact one; 0 for polynomials
 
   /// An upper bound of ||q - sigma_0 + Pi^p sigma_0|| for a q in P^p of this norm. Exact moments leave what
   /// is orthogonal to q.
@@ -47,7 +52,9 @@ class InitialStress
   }
   /// The coefficients of Pi^{p+1} sigma_0 in fem::orthonormal_values on the reference simplex; those that are
   /// missing at the end are 0. Empty where it does not act.
-  [[nodiscard]] std::span<const Tensor<dim>> coefficients(Index cell) const;
+  [[nodiscard]] std::span<const Tensor<dim>> coefficients(Index cell) const { return of(cell).plane; }
+  /// The same of the entry around the axis of an axisymmetric problem.
+  [[nodiscard]] std::span<const double> hoop_coefficients(Index cell) const { return of(cell).hoop; }
   [[nodiscard]] StressRemainder remainder(Index cell) const
   {
     return remainders_.empty() ? StressRemainder{} : remainders_[cell];
@@ -57,14 +64,24 @@ class InitialStress
   [[nodiscard]] std::int64_t parts() const { return parts_; }
 
  private:
+  struct Coefficients
+  {
+    std::vector<Tensor<dim>> plane{};
+    std::vector<double> hoop{};  ///< empty unless the problem is axisymmetric
+  };
+  [[nodiscard]] const Coefficients& of(Index cell) const;
   void represent_constants(const problem::Problem<dim>& problem);
   void represent(const problem::Problem<dim>& problem, int degree, double density, int max_parts);
+  /// Sets what moments of data are of a cell, and adds to its remainder.
+  template <class Moments, class Datum, class Set>
+  void represent(const Moments& moments, const Datum& datum, Index cell, double density, int max_parts,
+                 const Set& set);
 
   const mesh::Mesh<dim>* mesh_;
-  std::vector<char> acts_;                           ///< in the regions
-  std::vector<std::vector<Tensor<dim>>> of_region_;  ///< where it is constant; no regions: it acts nowhere
-  std::vector<std::vector<Tensor<dim>>> of_cell_;    ///< where it varies; empty: it does so nowhere
-  std::vector<StressRemainder> remainders_;          ///< empty: all 0
+  std::vector<char> acts_;                   ///< in the regions
+  std::vector<Coefficients> of_region_;      ///< where it is constant; no regions: it acts nowhere
+  std::vector<Coefficients> of_cell_;        ///< where it varies; empty: it does so nowhere
+  std::vector<StressRemainder> remainders_;  ///< empty: all 0
   std::int64_t subdivided_ = 0;
   std::int64_t parts_ = 0;
 };

@@ -3,14 +3,18 @@
 #include <cmath>
 
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/contact/nitsche/initial_stress.h"
 #include "tribound/fem/evaluation.h"
+#include "tribound/fem/polynomials.h"
 #include "tribound/mesh/geometry.h"
 
 namespace tribound::contact
 {
 
 MeridianCells::MeridianCells(const problem::Problem<2>& problem, const fem::LagrangeSpace<2>& space)
-    : problem_(problem), space_(space), rules_(space.mesh(), 2 * space.degree())
+    : problem_(problem),
+      space_(space),
+      rules_(space.mesh(), 2 * (space.degree() + (problem.has_initial_stress() ? 2 : 0)))  // r sigma_0
 {
   tables_.reserve(rules_.size());
   for (int k = 0; k < rules_.size(); ++k) tables_.push_back(space.basis().tabulate(rules_[k].points));
@@ -86,26 +90,73 @@ void MeridianCells::add_forces(Index cell, std::span<const double> u, std::span<
                  });
 }
 
-auto MeridianCells::squares(Index cell, std::span<const double> u) const -> Squares
+auto MeridianCells::at_points(const InitialStress<2>* initial, Index cell) const -> std::vector<Stress>
 {
-  const problem::Material& of = material(cell);
+  const std::vector<Point<2>>& points = rules_.of_cell(cell).points;
+  std::vector<Stress> values(points.size());
+  if (initial == nullptr || !initial->acts_on(cell)) return values;
+  const int degree = space_.degree() + 1;
+  std::vector<double> theta(fem::polynomial_dimension(2, degree));
+  const std::span<const Tensor<2>> plane = initial->coefficients(cell);
+  const std::span<const double> hoop = initial->hoop_coefficients(cell);
+  for (std::size_t q = 0; q < points.size(); ++q)
+  {
+    fem::orthonormal_values<2>(degree, points[q], theta);
+    for (std::size_t j = 0; j < plane.size(); ++j)
+    {
+      values[q].plane += theta[j] * plane[j];
+      values[q].hoop += theta[j] * hoop[j];
+    }
+  }
+  return values;
+}
+
+void MeridianCells::add_initial_forces(Index cell, const InitialStress<2>& initial,
+                                       std::span<double> vector) const
+{
   const std::span<const Index> nodes = space_.cell_nodes(cell);
-  Squares sums;
+  const std::vector<Stress> given = at_points(&initial, cell);
+  auto stress = given.begin();
   for_each_point(cell,
                  [&](double r, double weight, std::span<const double> phi, std::span<const Point<2>> gradient)
                  {
-                   const Tensor<2> of_u = gradient_of(nodes, u, gradient);
-                   const double hoop = fem::value_at<2>(nodes, u, phi)[0] / r;
-                   const Tensor<2> stress = sigma<2>(of, of_u, hoop);
-                   const double along = hoop_stress(of, of_u, hoop);
-                   sums.energy += weight * (stress.cwiseProduct(of_u).sum() + along * hoop);
-                   sums.sigma += weight * (stress.squaredNorm() + along * along);
-                   double terms = 0;
                    for (std::size_t i = 0; i < nodes.size(); ++i)
-                     terms += std::hypot(u[2 * nodes[i]], u[2 * nodes[i] + 1]) *
-                              (gradient[i].norm() + std::abs(phi[i]) / r);
-                   sums.terms += weight * std::pow((2 * of.mu + 3 * of.lambda) * terms, 2);
+                   {
+                     Eigen::Map<Point<2>> force(&vector[2 * static_cast<std::size_t>(nodes[i])]);
+                     force -= weight * stress->plane * gradient[i];
+                     force[0] -= weight / r * stress->hoop * phi[i];
+                   }
+                   ++stress;
                  });
+}
+
+auto MeridianCells::squares(Index cell, std::span<const double> u, const InitialStress<2>* initial) const
+    -> Squares
+{
+  const problem::Material& of = material(cell);
+  const std::span<const Index> nodes = space_.cell_nodes(cell);
+  const std::vector<Stress> given = at_points(initial, cell);
+  auto rest = given.begin();
+  Squares sums;
+  for_each_point(
+      cell,
+      [&](double r, double weight, std::span<const double> phi, std::span<const Point<2>> gradient)
+      {
+        const Tensor<2> of_u = gradient_of(nodes, u, gradient);
+        const double hoop = fem::value_at<2>(nodes, u, phi)[0] / r;
+        const Tensor<2> stress = sigma<2>(of, of_u, hoop);
+        const double along = hoop_stress(of, of_u, hoop);
+        sums.energy += weight * (stress.cwiseProduct(of_u).sum() + along * hoop);
+        sums.sigma += weight * ((stress + rest->plane).squaredNorm() + std::pow(along + rest->hoop, 2));
+        double terms = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          terms +=
+              std::hypot(u[2 * nodes[i]], u[2 * nodes[i] + 1]) * (gradient[i].norm() + std::abs(phi[i]) / r);
+        sums.terms +=
+            weight *
+            std::pow((2 * of.mu + 3 * of.lambda) * terms + std::hypot(rest->plane.norm(), rest->hoop), 2);
+        ++rest;
+      });
   return sums;
 }
 

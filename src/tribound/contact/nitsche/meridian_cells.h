@@ -17,6 +17,9 @@
 namespace tribound::contact
 {
 
+template <int dim>
+class InitialStress;
+
 /// Keeps references to problem and space.
 class MeridianCells
 {
@@ -28,17 +31,30 @@ class MeridianCells
   /// vector_i += a(u, phi_i) on a cell.
   void add_forces(Index cell, std::span<const double> u, std::span<double> vector) const;
 
+  /// vector_i -= the integral over a cell of r sigma_0 : grad phi_i and of sigma_{0,tt} phi_{i,r}.
+  void add_initial_forces(Index cell, const InitialStress<2>& initial, std::span<double> vector) const;
+
   /// Integrals over a cell with the weight r.
   struct Squares
   {
     double energy = 0;  ///< a(u, u)
-    double sigma = 0;   ///< ||sigma(u)||^2 + ||sigma_tt(u)||^2
-    /// Of (2 mu + 3 lambda) sum_i |u_i| (|grad phi_i| + |phi_i| / r): what cancels in sigma(u)
+    double sigma = 0;   ///< ||sigma(u)||^2 + ||sigma_tt(u)||^2, sigma(u) = C eps(u) + sigma_0
+    /// Of (2 mu + 3 lambda) sum_i |u_i| (|grad phi_i| + |phi_i| / r) + |sigma_0|: what cancels in sigma(u)
     double terms = 0;
   };
-  [[nodiscard]] Squares squares(Index cell, std::span<const double> u) const;
+  /// `initial`: null without sigma_0.
+  [[nodiscard]] Squares squares(Index cell, std::span<const double> u,
+                                const InitialStress<2>* initial = nullptr) const;
 
  private:
+  /// The entries of sigma_0 in the plane, and that around the axis.
+  struct Stress
+  {
+    Tensor<2> plane = Tensor<2>::Zero();
+    double hoop = 0;
+  };
+  /// At the points of the rule of a cell.
+  [[nodiscard]] std::vector<Stress> at_points(const InitialStress<2>* initial, Index cell) const;
   /// visit(r, weight, values, gradients): of the basis functions at the points of the rule, in space; the
   /// weight contains r.
   template <class Visit>

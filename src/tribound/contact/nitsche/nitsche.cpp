@@ -45,9 +45,10 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       tables_(space.basis(), segments_, facet_rule().points),
       nodes_(problem.is_axisymmetric() ? SegmentNodes<dim>(facet_rule().points)
                                        : SegmentNodes<dim>(space.degree(), facet_rule().points)),
+      initial_nodes_(space.degree(), facet_rule().points),
       node_tables_(space.basis(), segments_, nodes_.nodes())
 {
-  add_initial_stress<dim>(data_, space, load_);
+  add_initial_stress<dim>(data_, space, load_, meridian_);
   springs_.add_rest(load_);
   rigid_parts_.add_load(load_);
   look_for_bonds();
@@ -182,11 +183,11 @@ template <int dim>
 void NitscheForm<dim>::find_initial_tractions()
 {
   if (!problem_->has_initial_stress()) return;
-  initial_tractions_.reserve(segments_.size() * nodes_.nodes().size());
+  initial_tractions_.reserve(segments_.size() * initial_nodes_.nodes().size());
   initial_deviation_.reserve(segments_.size());
   for (const ContactSegment<dim>& segment : segments_)
   {
-    for (const Point<dim - 1>& s : nodes_.nodes())
+    for (const Point<dim - 1>& s : initial_nodes_.nodes())
       initial_tractions_.push_back(contact::initial_traction(*problem_, space_->mesh(), segment, s));
     initial_deviation_.push_back(
         initial_traction_deviation(*problem_, space_->mesh(), segment, space_->degree()));
@@ -210,10 +211,10 @@ void NitscheForm<dim>::find_initial_tractions()
 template <int dim>
 auto NitscheForm<dim>::initial_traction(std::size_t k) const -> Columns
 {
-  const auto n = static_cast<std::size_t>(nodes_.values().rows());
+  const auto n = static_cast<std::size_t>(initial_nodes_.values().rows());
   if (initial_tractions_.empty()) return Columns::Zero(dim, n_segment_points());
   return Eigen::Map<const Columns>(initial_tractions_[k * n].data(), dim, static_cast<Eigen::Index>(n)) *
-         nodes_.values();
+         initial_nodes_.values();
 }
 
 template <int dim>

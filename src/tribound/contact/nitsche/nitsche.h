@@ -249,6 +249,7 @@ class NitscheForm
   std::vector<ContactPoint<dim>> points_;
   SegmentTables<dim> tables_;  ///< at the contact points
   SegmentNodes<dim> nodes_;
+  SegmentNodes<dim> initial_nodes_;  ///< where {sigma_0} is interpolated: those of P^p
   SegmentTables<dim> node_tables_;
   std::vector<Point<dim>> initial_tractions_;           ///< {sigma_0} at the nodes of all segments; empty: 0
   std::vector<double> initial_deviation_;               ///< of all segments; empty: 0

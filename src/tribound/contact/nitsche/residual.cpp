@@ -37,7 +37,7 @@ double load_work(const NitscheForm<dim>& form, std::span<const double> u)
 {
   std::vector<double> others(u.size(), 0.0);
   form.springs().add_rest(others);
-  add_initial_stress<dim>(form.data(), form.space(), others);
+  add_initial_stress<dim>(form.data(), form.space(), others, form.meridian());
   return form.space().dot(form.load(), u) - form.space().dot(others, u);
 }
 

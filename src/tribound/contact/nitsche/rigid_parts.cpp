@@ -198,7 +198,7 @@ void RigidParts<dim>::find_motions(const problem::Problem<dim>& problem)
     }
     part.first = n_motions_;
     n_motions_ += part.motions.cols();
-    find_load(*problem.boundary(part.tag).rigid, gram(k), part);
+    find_load(problem, gram(k), part);
   }
 }
 
@@ -237,10 +237,12 @@ void RigidParts<dim>::check_neighbours(const problem::Problem<dim>& problem) con
 
 /// `gram`: the products of the modes over the nodes of the part.
 template <int dim>
-void RigidParts<dim>::find_load(const problem::RigidPart<dim>& rigid, const Eigen::MatrixXd& gram, Part& part)
+void RigidParts<dim>::find_load(const problem::Problem<dim>& problem, const Eigen::MatrixXd& gram, Part& part)
 {
+  const problem::RigidPart<dim>& rigid = *problem.boundary(part.tag).rigid;
   Eigen::VectorXd work = part.modes.at(rigid.point).transpose() * rigid.total_force();
   work.tail(work.size() - dim) += rigid.total_moment() / part.modes.size;
+  work /= problem.full_circle();
   part.forces = solve_regular(gram, work);
   const Eigen::VectorXd in_motions = part.motions.transpose() * work;
   load_.insert(load_.end(), in_motions.begin(), in_motions.end());

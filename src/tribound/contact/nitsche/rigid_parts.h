@@ -54,9 +54,9 @@ class RigidParts
   void add(std::span<const double> r, std::span<double> vector) const;
   /// Sets the entries on the parts to sum_i r_i chi_i.
   void set(std::span<const double> r, std::span<double> vector) const;
-  /// Adds nodal forces with the given forces and moments, also along motions that are fixed.
+  /// Adds nodal forces with that work, also along motions that are fixed.
   void add_load(std::span<double> vector) const;
-  /// The work of the given forces and moments in chi_i.
+  /// The work of the given forces and moments in chi_i, of axisymmetric problems for one radian.
   [[nodiscard]] std::span<const double> load() const { return load_; }
   /// Per degree of freedom: 1 on the parts.
   [[nodiscard]] std::vector<char> marks() const;
@@ -94,7 +94,7 @@ class RigidParts
   void find_motions(const problem::Problem<dim>& problem);
   void check_bodies(const problem::Problem<dim>& problem) const;
   void check_neighbours(const problem::Problem<dim>& problem) const;
-  void find_load(const problem::RigidPart<dim>& rigid, const Eigen::MatrixXd& gram, Part& part);
+  void find_load(const problem::Problem<dim>& problem, const Eigen::MatrixXd& gram, Part& part);
 
   const fem::LagrangeSpace<dim>* space_;
   std::vector<Part> parts_;

@@ -183,11 +183,12 @@ double least_of_quadratic(const problem::Field& field, const FacetVertices<dim>&
 }  // namespace
 
 template <int dim>
-SpringFacet<dim> spring_facet(const problem::BoundaryCondition<dim>& boundary, const mesh::Mesh<dim>& mesh,
+SpringFacet<dim> spring_facet(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                               std::size_t number, int degree, const fem::Quadrature<dim - 1>& rule)
 {
   constexpr double rounding = 1e-12;  // of K, relative to its largest value
   const mesh::BoundaryFacet& on = mesh.boundary()[number];
+  const problem::BoundaryCondition<dim>& boundary = problem.boundary(on.tag);
   const problem::Spring<dim>& spring = *boundary.spring;
   const Point<dim> normal = mesh::facet_geometry(mesh, on.cell, on.local).normal;
   const SimplexMap<dim - 1, dim> map = simplex_map(mesh, on);
@@ -226,7 +227,7 @@ SpringFacet<dim> spring_facet(const problem::BoundaryCondition<dim>& boundary, c
   for (int q = 0; q < rule.size(); ++q)
   {
     const Point<dim> x = map(rule.points[q]);
-    result.weights.push_back(map.measure * rule.weights[q] * mesh::factorial<dim - 1>);
+    result.weights.push_back(map.measure * rule.weights[q] * mesh::factorial<dim - 1> * problem.weight(x));
     result.stiffness.values.push_back(boundary.on_free(spring.stiffness(x, normal)));
     Point<dim>& rest = result.rest.values.emplace_back();
     for (int a = 0; a < dim; ++a) rest[a] = spring.rest[a](x);
@@ -234,9 +235,9 @@ SpringFacet<dim> spring_facet(const problem::BoundaryCondition<dim>& boundary, c
   return result;
 }
 
-template SpringFacet<2> spring_facet(const problem::BoundaryCondition<2>&, const mesh::Mesh<2>&, std::size_t,
-                                     int, const fem::Quadrature<1>&);
-template SpringFacet<3> spring_facet(const problem::BoundaryCondition<3>&, const mesh::Mesh<3>&, std::size_t,
-                                     int, const fem::Quadrature<2>&);
+template SpringFacet<2> spring_facet(const problem::Problem<2>&, const mesh::Mesh<2>&, std::size_t, int,
+                                     const fem::Quadrature<1>&);
+template SpringFacet<3> spring_facet(const problem::Problem<3>&, const mesh::Mesh<3>&, std::size_t, int,
+                                     const fem::Quadrature<2>&);
 
 }  // namespace tribound::contact

@@ -23,7 +23,7 @@ struct SpringDatum
   bool is_polynomial = true;  ///< of degree m
 };
 
-/// K and u_0 on a boundary facet, at the points of the rule exact to data_quadrature_degree(p). Components
+/// K and u_0 on a boundary facet, at the points of the rule exact to data_exactness(). Components
 /// that Gamma_D fixes have no spring: K is restricted to the others.
 template <int dim>
 struct SpringFacet
@@ -32,21 +32,21 @@ struct SpringFacet
   Index cell;
   int local;
   double measure;
-  double most = 0;   ///< >= |K|
-  bool is_resolved;  ///< K (u - u_0) is in P^p
-  std::vector<double> weights{};
+  double most = 0;                       ///< >= |K|
+  bool is_resolved;                      ///< K (u - u_0) is in P^p
+  std::vector<double> weights{};         ///< of the rule, times measure, on a meridian times r
   SpringDatum<Tensor<dim>> stiffness{};  ///< m = 2
   SpringDatum<Point<dim>> rest{};        ///< m = p + 2, less the degree of K
   bool is_nonnegative = true;            ///< K, everywhere on the facet; known if K has degree 2
 };
 
-/// The spring of a boundary on its facet with this number, for displacements of degree p. The rule is exact
+/// The spring of a problem on the facet with this number, for displacements of degree p. The rule is exact
 /// for products of K (u - u_0) with itself if K has degree <= 2 and K u_0 degree <= p + 2, and for its
 /// integrals against affine functions if both have degree <= p + 2. Throws InputError where K is negative at
 /// a point or may be unbounded.
 template <int dim>
-[[nodiscard]] SpringFacet<dim> spring_facet(const problem::BoundaryCondition<dim>& boundary,
-                                            const mesh::Mesh<dim>& mesh, std::size_t number, int degree,
+[[nodiscard]] SpringFacet<dim> spring_facet(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                            std::size_t number, int degree,
                                             const fem::Quadrature<dim - 1>& rule);
 
 }  // namespace tribound::contact

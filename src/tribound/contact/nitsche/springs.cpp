@@ -13,16 +13,22 @@ Springs<dim>::Springs(const problem::Problem<dim>& problem, const fem::LagrangeS
     : space_(&space)
 {
   if (!problem.has_springs()) return;
-  rule_ = fem::quadrature<dim - 1>(fem::data_quadrature_degree(space.degree()));
+  rule_ = fem::quadrature<dim - 1>(data_exactness(problem, space.degree()));
   table_ = fem::tabulate_on_facets<dim>(space.basis(), rule_.points);
   const mesh::Mesh<dim>& mesh = space.mesh();
   mesh.ranks().together(
       [&]
       {
         for (std::size_t number = 0; number < mesh.boundary().size(); ++number)
-          if (const auto& boundary = problem.boundary(mesh.boundary()[number].tag); boundary.spring)
-            facets_.push_back(spring_facet(boundary, mesh, number, space.degree(), rule_));
+          if (problem.boundary(mesh.boundary()[number].tag).spring)
+            facets_.push_back(spring_facet(problem, mesh, number, space.degree(), rule_));
       });
+}
+
+template <int dim>
+double Springs<dim>::plain_weight(const SpringFacet<dim>& facet, int q) const
+{
+  return facet.measure * rule_.weights[q] * mesh::factorial<dim - 1>;
 }
 
 /// With polynomials K_h and u_0h, T = -K (u - u_0) and T_h = -K_h (u - u_0h),
@@ -34,7 +40,7 @@ LoadRemainder Springs<dim>::remainder(const SpringFacet<dim>& facet, std::span<c
   const double root = std::sqrt(facet.measure);
   double apart = 0;
   for (int q = 0; q < rule_.size(); ++q)
-    apart += facet.weights[q] * (displacement(facet, u, q) - facet.rest.values[q]).squaredNorm();
+    apart += plain_weight(facet, q) * (displacement(facet, u, q) - facet.rest.values[q]).squaredNorm();
   const auto missed = [&](double of_stiffness, double of_rest)
   { return 2 * (of_stiffness * (std::sqrt(apart) + of_rest * root) + facet.most * of_rest * root); };
   return {oscillation(facet, u) + missed(facet.stiffness.remainder, facet.rest.remainder),
@@ -61,7 +67,7 @@ double Springs<dim>::oscillation(const SpringFacet<dim>& facet, std::span<const 
   {
     Point<dim> rest = traction(facet, u, q);
     for (int i = 0; i < n; ++i) rest -= theta[static_cast<std::size_t>(q) * n + i] * moments[i];
-    squares += facet.weights[q] * rest.squaredNorm();
+    squares += plain_weight(facet, q) * rest.squaredNorm();
   }
   return std::sqrt(squares);
 }

@@ -37,7 +37,8 @@ class Springs
   {
     return -(facet.stiffness.values[q] * (displacement(facet, u, q) - facet.rest.values[q]));
   }
-  /// What is lost when -K (u - u_0) is replaced by its values at the points and projected on P^p.
+  /// What is lost when -K (u - u_0) is replaced by its values at the points and projected on P^p, in norms
+  /// without r.
   [[nodiscard]] LoadRemainder remainder(const SpringFacet<dim>& facet, std::span<const double> u) const;
   /// Why the energy of springs is not known between the points on some rank: K is no polynomial of degree 2,
   /// or may be negative there. Empty: it is known.
@@ -72,6 +73,8 @@ class Springs
     return table_.on_facet[facet.local].values_at(q);
   }
 
+  /// Without r.
+  [[nodiscard]] double plain_weight(const SpringFacet<dim>& facet, int q) const;
   [[nodiscard]] double oscillation(const SpringFacet<dim>& facet, std::span<const double> u) const;
 
   const fem::LagrangeSpace<dim>* space_;

@@ -29,7 +29,7 @@ double added_around_axis(const problem::Material& material, double hoop_strain)
 template <int dim>
 bool has_out_of_plane_rest(const problem::Region<dim>& region)
 {
-  return dim == 2 && (region.has_initial_stress() || !region.initial_stress_zz.is_zero());
+  return dim == 2 && region.has_initial_stress();
 }
 
 template <int dim>
@@ -89,18 +89,12 @@ std::vector<Tensor<dim>> values_at(const TensorField<dim>& field, const fem::Lag
   return values;
 }
 
-namespace
-{
-
-/// A point of a cell, a little inside: a formula that jumps between cells has their branch there.
 template <int dim>
 Point<dim> inside(const mesh::CellMap<dim>& map, const Point<dim>& xhat)
 {
   constexpr double inwards = 1e-9;
   return map(Point<dim>((1 - inwards) * xhat + Point<dim>::Constant(inwards / (dim + 1))));
 }
-
-}  // namespace
 
 namespace
 {
@@ -212,6 +206,8 @@ void symmetric_at_nodes(const problem::Problem<dim>& problem, const fem::Lagrang
   }
 }
 
+template Point<2> inside(const mesh::CellMap<2>&, const Point<2>&);
+template Point<3> inside(const mesh::CellMap<3>&, const Point<3>&);
 template bool has_out_of_plane_rest(const problem::Region<2>&);
 template bool has_out_of_plane_rest(const problem::Region<3>&);
 template double out_of_plane_rest(const problem::Problem<2>&, int, const Point<2>&);

@@ -12,6 +12,7 @@
 #include "tribound/base/types.h"
 #include "tribound/certify/equilibrate/stress.h"
 #include "tribound/fem/space.h"
+#include "tribound/mesh/geometry.h"
 #include "tribound/problem/problem.h"
 
 namespace tribound::io
@@ -42,6 +43,10 @@ template <int dim>
 [[nodiscard]] std::vector<Tensor<dim>> values_at(const TensorField<dim>& field,
                                                  const fem::LagrangeBasis<dim>& basis, Index cell,
                                                  std::span<const Point<dim>> points);
+
+/// A point of a cell, a little inside: a formula that jumps between cells has their branch there.
+template <int dim>
+[[nodiscard]] Point<dim> inside(const mesh::CellMap<dim>& map, const Point<dim>& xhat);
 
 /// sigma(u_h) as a field, with the initial stress. Keeps references to the arguments.
 template <int dim>

@@ -78,11 +78,13 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
                                           const problem::Units& units)
 {
   std::vector<BoundaryFacts> boundaries;
+  const int dimension = dim + (problem.is_axisymmetric() ? 1 : 0);
   for (int tag = 0; tag < static_cast<int>(problem.boundaries().size()); ++tag)
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundaries()[tag];
     const std::string paired = pair_words(problem, tag, units);
-    boundaries.push_back({condition.name, 0, 0.0, paired.empty() ? describe(condition, units) : paired});
+    boundaries.push_back(
+        {condition.name, 0, 0.0, paired.empty() ? describe(condition, units, dimension) : paired});
   }
   boundaries.push_back({"(no group)", 0, 0.0, describe(problem.boundary(-1), units)});
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
@@ -125,7 +127,7 @@ std::string describe(const problem::Material& material, int dimension, const pro
 
 /// "rigid part, force (0, -100) N, moment 5 N m about (0, 0), without x, rz"
 template <int dim>
-std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Units& units)
+std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Units& units, int dimension)
 {
   const auto list = [](const auto& fields)
   {
@@ -133,10 +135,10 @@ std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Unit
     for (const problem::Field& field : fields) words += (words.empty() ? "" : ", ") + problem::words(field);
     return fields.size() > 1 ? "(" + words + ")" : words;
   };
-  std::string words = "rigid part, force " + list(part.force) + units.behind(UnitOf::force, dim);
+  std::string words = "rigid part, force " + list(part.force) + units.behind(UnitOf::force, dimension);
   if (!std::ranges::all_of(part.moment, &problem::Field::is_zero))
-    words += fmt::format(", moment {}{} about ({:g})", list(part.moment), units.behind(UnitOf::moment, dim),
-                         fmt::join(part.point, ", "));
+    words += fmt::format(", moment {}{} about ({:g})", list(part.moment),
+                         units.behind(UnitOf::moment, dimension), fmt::join(part.point, ", "));
   std::string fixed;
   for (std::size_t i = 0; i < part.fixed.size(); ++i)
     if (part.fixed[i]) fixed += fmt::format("{}{}", fixed.empty() ? "" : ", ", problem::motion_names<dim>[i]);
@@ -144,7 +146,8 @@ std::string rigid_words(const problem::RigidPart<dim>& part, const problem::Unit
 }
 
 template <int dim>
-std::string describe(const problem::BoundaryCondition<dim>& condition, const problem::Units& units)
+std::string describe(const problem::BoundaryCondition<dim>& condition, const problem::Units& units,
+                     int dimension)
 {
   const std::string length = units.behind(UnitOf::length, dim);
   const std::string stress = units.behind(UnitOf::stress, dim);
@@ -156,7 +159,7 @@ std::string describe(const problem::BoundaryCondition<dim>& condition, const pro
     for (int i = 0; i < dim; ++i) list += (i == 0 ? "" : ", ") + component(i);
     return "(" + list + ")";
   };
-  if (condition.rigid) add(rigid_words(*condition.rigid, units));
+  if (condition.rigid) add(rigid_words(*condition.rigid, units, dimension));
   if (condition.clamps_any())
     add("displacement " +
         vector([&](int i)
@@ -222,8 +225,8 @@ BuildFacts build_facts()
   return facts;
 }
 
-template std::string describe(const problem::BoundaryCondition<2>&, const problem::Units&);
-template std::string describe(const problem::BoundaryCondition<3>&, const problem::Units&);
+template std::string describe(const problem::BoundaryCondition<2>&, const problem::Units&, int);
+template std::string describe(const problem::BoundaryCondition<3>&, const problem::Units&, int);
 template MeshFacts mesh_facts(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
                               const fem::Constraints&, const problem::Units&);
 template MeshFacts mesh_facts(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,

@@ -109,9 +109,9 @@ template <int dim>
 [[nodiscard]] std::string describe(const problem::Material& material, int dimension,
                                    const problem::Units& units = {});
 
-/// The conditions on a part of the boundary, in words.
+/// The conditions on a part of the boundary, in words. `dimension`: that of the body.
 template <int dim>
 [[nodiscard]] std::string describe(const problem::BoundaryCondition<dim>& condition,
-                                   const problem::Units& units = {});
+                                   const problem::Units& units = {}, int dimension = dim);
 
 }  // namespace tribound::io

@@ -176,13 +176,17 @@ std::pair<Tensor<dim>, double> stress_at(const contact::NitscheForm<dim>& form, 
     if (form.problem().is_axisymmetric())  // u_r / r is no polynomial
     {
       const mesh::CellMap<2> map = mesh::cell_map(space.mesh(), cell);
-      const problem::Material& material = form.problem().material(space.mesh().region(cell));
+      const int region = space.mesh().region(cell);
+      const problem::Material& material = form.problem().material(region);
       const fem::Tabulation<2> table = space.basis().tabulate(at);
       const Tensor<2> gradient =
           fem::gradient_at<2>(space.cell_nodes(cell), u, table.gradients_at(0), map.inverse_transpose);
       const double u_r = fem::value_at<2>(space.cell_nodes(cell), u, table.values_at(0))[0];
       const double hoop = contact::hoop_strain(map(xhat)[0], u_r, gradient(0, 0));
-      return {contact::sigma<2>(material, gradient, hoop), added_around_axis(material, hoop)};
+      Tensor<2> sigma = contact::sigma<2>(material, gradient, hoop);
+      if (form.problem().regions()[region].has_initial_stress())
+        sigma += form.problem().initial_stress(region, inside<2>(map, xhat));
+      return {sigma, added_around_axis(material, hoop)};
     }
   return {values_at<dim>(field, space.basis(), cell, at)[0], 0.0};
 }

@@ -208,7 +208,8 @@ SolutionFigures solution_figures(const contact::NitscheForm<dim>& form,
     figures.energy = form.problem().full_circle() * level.norms.energy;
     figures.sigma_norm = level.norms.sigma;
   }
-  if (form.problem().has_springs()) figures.spring_energy = form.springs().energy(level.u);
+  if (form.problem().has_springs())
+    figures.spring_energy = form.problem().full_circle() * form.springs().energy(level.u);
   for (const contact::PartMotion<dim>& part : form.rigid_parts().motions(form.problem(), level.u))
     figures.rigid_parts.push_back({form.problem().boundary(part.tag).name,
                                    {part.translation.begin(), part.translation.end()},
