@@ -20,7 +20,7 @@ constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
   throw InputError(where, fmt::format("a case with model = \"axisymmetric\" has no {}", what), right);
 }
 
-void check_contact(const problem::Contact& contact, const Where& where)
+void check_contact(const problem::Contact& contact)
 {
   if (contact.base)
     refuse(contact.base->where, "bases of hydraulic structures", "water = { pressure = ... } in the joint");
@@ -58,9 +58,9 @@ void read_model(const TableReader& root, Config& config)
   for (BoundaryConfig& boundary : config.boundaries)
   {
     if (boundary.rigid) check_rigid(*boundary.rigid);
-    if (boundary.contact) check_contact(*boundary.contact, boundary.where);
+    if (boundary.contact) check_contact(*boundary.contact);
   }
-  for (const ContactConfig& contact : config.contacts) check_contact(contact.contact, contact.where);
+  for (const ContactConfig& contact : config.contacts) check_contact(contact.contact);
 }
 
 }  // namespace tribound::case_file

@@ -184,8 +184,7 @@ void MeridianCellSource::find_body_moments(MeridianCell& cell, Index c, int perm
       cell.body[1][a] += lambda[a] * f[i][1] * weighted;
     }
   }
-  if (!cell.has_edge_on_axis) return;
-  for (Eigen::VectorXd& moments : cell.body[1]) project(cell, moments);
+  if (cell.has_edge_on_axis) fields_.project_at_axis(cell.r, cell.body[1]);
 }
 
 }  // namespace tribound::certify

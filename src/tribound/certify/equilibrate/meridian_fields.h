@@ -59,6 +59,10 @@ class MeridianFields
   /// axis r times the projection of f onto P^{p-1} with the weight r.
   [[nodiscard]] std::array<Eigen::VectorXd, 2> load(Index c, const SortedCell<2>& cell) const;
 
+  /// On a cell with an edge on the axis, from moments of r f on P^p to those of r times the projection of f
+  /// onto P^{p-1} with the weight r.
+  void project_at_axis(const std::array<double, 3>& r, std::span<Eigen::VectorXd> moments) const;
+
   /// The products of r phi_j, phi_j in P^p, with P^q; r is given at the vertices.
   [[nodiscard]] Eigen::MatrixXd times_radius(const std::array<double, 3>& r) const;
   /// Of the vertices of a cell.
@@ -66,10 +70,6 @@ class MeridianFields
   [[nodiscard]] const MeridianReference& reference() const { return reference_; }
 
  private:
-  /// On a cell with an edge on the axis, from moments of r f on P^p to those of r times the projection of f
-  /// onto P^{p-1} with the weight r.
-  void project_at_axis(const std::array<double, 3>& r, std::span<Eigen::VectorXd> moments) const;
-
   const contact::NitscheForm<2>& form_;
   MeridianReference reference_;
   fem::Quadrature<2> stress_rule_;
