@@ -52,7 +52,8 @@ struct KnownNumber
 
 /// The resultant if it follows from equilibrium: nothing else may stop the motion of the bodies on whose
 /// contact boundaries or springs it is taken. Then every solution has -(f, m) - (g_N, m)_N over these bodies,
-/// for any contact law. None of axisymmetric problems yet. All ranks together.
+/// for any contact law. Of axisymmetric problems, with the weight r, motions along the axis alone have one.
+/// All ranks together.
 template <int dim>
 [[nodiscard]] std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                                           const ContactResultant<dim>& resultant);

@@ -128,6 +128,9 @@ std::vector<char> ContactWeights<dim>::jumps(const contact::NitscheForm<dim>& fo
         if (is_other ||
             (form.problem().boundary(tag).fixes(a) && resultant.motion(first_.point<dim>(v))[a] != 0))
           result[v] = 1;
+    for (const Index v : first_.vertices_of<dim>(f))  // u_r = 0 on the axis
+      if (form.problem().weight(first_.point<dim>(v)) == 0 && resultant.motion(first_.point<dim>(v))[0] != 0)
+        result[v] = 1;
   }
   // If slaves are partly without an opposite facet, only these vertices matter.
   std::vector<Index> named;

@@ -5,8 +5,10 @@
 
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/rigid_remainder.h"
+#include "tribound/certify/energy/edge_moments.h"
 #include "tribound/certify/energy/energy_bound.h"
 #include "tribound/certify/energy/load_oscillation.h"
+#include "tribound/certify/energy/meridian_edge_forces.h"
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/mesh/geometry.h"
 
@@ -18,7 +20,8 @@ DualProblem<dim>::DualProblem(const contact::NitscheForm<dim>& form, problem::Pr
     : problem_(std::move(problem)),
       form_(problem_, form.space(), form.gamma0(),
             std::vector(form.segments().begin(), form.segments().end())),
-      equilibrator_(std::make_unique<Equilibrator<dim>>(form_, PatchStress::afw))
+      equilibrator_(std::make_unique<Equilibrator<dim>>(
+          form_, problem_.is_axisymmetric() ? PatchStress::afw_compliance : PatchStress::afw))
 {
 }
 
@@ -34,7 +37,11 @@ template <int dim>
 Stress<dim> DualProblem<dim>::balanced(std::span<const double> z, std::span<const Point<dim>> t,
                                        std::string& reason) const
 {
-  Stress<dim> stress = equilibrator_->balanced(z, t, {});
+  std::vector<Tensor<dim>> turning;
+  if constexpr (dim == 2)
+    if (form_.space().degree() == 1)  // of an axisymmetric problem
+      turning = edge_moments<2>(form_.space().mesh(), meridian_edge_forces(form_, z, t));
+  Stress<dim> stress = equilibrator_->balanced(z, t, turning);
   if (!(check_identities<dim>(form_, t, stress).largest() <= cell_balance_limit) ||
       !(rigid_defect<dim>(form_, stress) <= cell_balance_limit))
     reason = "an identity of the dual stress is violated";
@@ -71,7 +78,10 @@ problem::Problem<dim> changed(const problem::Problem<dim>& problem, const mesh::
     if (boundaries[tag].spring) boundaries[tag].spring->rest = {};
     change_boundary(static_cast<int>(tag), boundaries[tag]);
   }
-  return {mesh, regions, boundaries};
+  problem::Problem<dim> result(mesh, regions, boundaries);
+  if constexpr (dim == 2)
+    if (problem.is_axisymmetric()) return result.axisymmetric();
+  return result;
 }
 
 /// The problem without loads, but with load(boundary) on one boundary.

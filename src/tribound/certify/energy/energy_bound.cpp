@@ -116,7 +116,7 @@ EnergyEstimator<dim>::EnergyEstimator(const contact::NitscheForm<dim>& form,
   parts_ = std::make_unique<Parts>(form, solver, quantities_ != nullptr, *korn, patches);
   if (parts_->motions.is_unclear()) reason_ = "conditions hardly stop a rigid motion of a body";
   if (std::string why = parts_->form.springs().why_unclear(); !why.empty()) reason_ = std::move(why);
-  if (reason_.empty() && quantities_ && !form.problem().is_axisymmetric())
+  if (reason_.empty() && quantities_)
     quantities_->prepare(parts_->form, parts_->facets, parts_->systems, parts_->motions.size() == 0);
 }
 
@@ -204,11 +204,6 @@ EnergyBound EnergyEstimator<dim>::operator()(std::span<const double> u) const
   const auto use = [&](const BoundedState<dim>& state)
   {
     if (!quantities_) return;
-    if (form_.problem().is_axisymmetric())
-    {
-      intervals = quantities_->from_equilibrium(u, "bodies of revolution have no error bars of quantities");
-      return;
-    }
     intervals = quantities_->from_equilibrium(u, {});
     quantities_->add_bounded(state, intervals);
   };

@@ -100,6 +100,13 @@ bool is_stopped(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodie
   return mesh.ranks().any(by_contact || by_conditions);
 }
 
+/// Whether a motion of the meridian is one of the body of revolution.
+template <int dim>
+bool is_along_axis(const RigidMotion<dim>& motion)
+{
+  return motion.spin.isZero(0) && motion.translation[0] == 0;
+}
+
 /// The boundaries that are rigid parts of these bodies; all on the first rank.
 template <int dim>
 std::vector<int> moved_parts(const contact::NitscheForm<dim>& form, const mesh::Bodies& bodies,
@@ -116,12 +123,16 @@ std::vector<int> moved_parts(const contact::NitscheForm<dim>& form, const mesh::
   return result;
 }
 
-/// Sums of the work of loads in the motion, of its absolute values and of what quadrature may miss.
+/// Sums of the work of loads in the motion, of its absolute values and of what quadrature may miss, with the
+/// weight of the problem.
 template <int dim>
 class LoadSums
 {
  public:
-  explicit LoadSums(const RigidMotion<dim>& motion) : motion_(motion) {}
+  LoadSums(const problem::Problem<dim>& problem, const RigidMotion<dim>& motion)
+      : problem_(problem), motion_(motion)
+  {
+  }
 
   /// Adds a cell or facet with these vertices.
   template <class Points, std::size_t n>
@@ -130,12 +141,13 @@ class LoadSums
   {
     for (const auto& [q, x, dx] : points)
     {
-      const Point<dim> m = motion_(x);
+      const Point<dim> m = problem_.weight(x) * motion_(x);
       work_ += dx * load[q].dot(m);
       absolute_ += dx * load[q].cwiseAbs().dot(m.cwiseAbs());
     }
     Point<dim> largest = Point<dim>::Zero();
-    for (const Point<dim>& x : vertices) largest = largest.cwiseMax(motion_(x).cwiseAbs());
+    for (const Point<dim>& x : vertices)
+      largest = largest.cwiseMax((problem_.weight(x) * motion_(x)).cwiseAbs());
     missed_ += missed * largest.sum();
   }
 
@@ -158,6 +170,7 @@ class LoadSums
   }
 
  private:
+  const problem::Problem<dim>& problem_;
   const RigidMotion<dim>& motion_;
   long double work_ = 0;
   double absolute_ = 0;
@@ -170,13 +183,13 @@ template <int dim>
 std::optional<KnownNumber> from_equilibrium(const contact::NitscheForm<dim>& form,
                                             const ContactResultant<dim>& resultant)
 {
-  if (form.problem().is_axisymmetric()) return {};
+  if (form.problem().is_axisymmetric() && !is_along_axis(resultant.motion)) return {};
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
   const std::vector<double> moved = moved_bodies(form, bodies, resultant);
   if (is_stopped<dim>(form, bodies, moved, resultant)) return {};
   const contact::DiscreteData<dim>& data = form.data();
-  LoadSums<dim> sums(resultant.motion);
+  LoadSums<dim> sums(form.problem(), resultant.motion);
   std::vector<Point<dim>> load(data.cell_rule().size());
   for (Index c = 0; c < mesh.n_owned_cells(); ++c)
   {

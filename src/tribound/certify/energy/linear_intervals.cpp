@@ -71,7 +71,7 @@ std::vector<JumpTerm> jump_terms(const BoundedState<dim>& state, std::size_t k)
 
 }  // namespace
 
-/// (S [phi_j], [phi_i])_C, S the stiffness of the springs.
+/// (S [phi_j], [phi_i])_C, S the stiffness of the springs; with the weight r on a meridian.
 template <int dim>
 algebra::Triplets LinearIntervals<dim>::springs() const
 {
@@ -79,16 +79,23 @@ algebra::Triplets LinearIntervals<dim>::springs() const
   const fem::Quadrature<dim - 1>& rule = form.facet_rule();
   const fem::Tabulation<dim - 1> table = basis_.tabulate(rule.points);
   const auto n = static_cast<std::size_t>(basis_.n_nodes());
-  std::vector<double> products(n * n, 0.0);  // of the basis on the reference facet
-  for (int q = 0; q < rule.size(); ++q)
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        products[i * n + j] += rule.weights[q] * table.values_at(q)[i] * table.values_at(q)[j];
+  std::vector<double> products(n * n);  // of the basis on a facet
+  const auto set_products = [&](const auto& weight)
+  {
+    std::ranges::fill(products, 0.0);
+    for (int q = 0; q < rule.size(); ++q)
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+          products[i * n + j] += weight(q) * table.values_at(q)[i] * table.values_at(q)[j];
+  };
+  set_products([&](int q) { return rule.weights[q]; });
   algebra::Triplets entries;
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
     const Tensor<dim> stiffness = form.segments()[k].det() * holding(k);
     if (stiffness.isZero()) continue;
+    if (form.problem().is_axisymmetric())
+      set_products([&](int q) { return rule.weights[q] * form.contact_points(k)[q].x[0]; });
     const std::vector<JumpTerm> terms = jump_terms(state_, k);
     for (const auto& [row, i, a, sign_i] : terms)
       for (const auto& [column, j, b, sign_j] : terms)

@@ -155,6 +155,22 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
 namespace
 {
 
+/// Times a factor, which numbers of the meridian have in those of the full circle.
+void scale(QuantityInterval& interval, double factor)
+{
+  interval.lower *= factor;
+  interval.upper *= factor;
+  for (double& cell : interval.cells) cell *= factor;
+}
+
+/// What the numbers of a quantity on the meridian are multiplied with: quotients stay as they are.
+template <int dim>
+double factor_of(QuantityKind kind, const problem::Problem<dim>& problem)
+{
+  const bool is_quotient = kind == QuantityKind::mean_displacement || kind == QuantityKind::safety_factor;
+  return is_quotient ? 1 : problem.full_circle();
+}
+
 QuantityInterval known_interval(const KnownNumber& number)
 {
   QuantityInterval result{.exact = true, .basis = "equilibrium"};
@@ -212,6 +228,7 @@ std::vector<QuantityInterval> QuantityBounds<dim>::from_equilibrium(std::span<co
     for (const LinearNumber<dim>& number : item.numbers) numbers.push_back(known_interval(*number.known));
     interval.reason = {};
     combine<dim>(interval, item.parts, std::move(numbers));
+    scale(interval, factor_of(item.kind(), form_.problem()));
   }
   return result;
 }
@@ -259,6 +276,7 @@ void QuantityBounds<dim>::add_bounded(const BoundedState<dim>& state,
       }
       combine<dim>(interval, item.parts, std::move(numbers));
     }
+    scale(interval, factor_of(item.kind(), form_.problem()));
     if (state.bound.target == EnergyTarget::computed_friction)
       add_note(interval, "of the computed friction threshold");
   }
