@@ -27,7 +27,7 @@ AdmissibleTraction<dim> admissible_traction(const contact::NitscheForm<dim>& for
   const auto on_facet = [&](std::size_t k)
   {
     const std::vector<TractionCone<dim>> cones = fit.cones(k);
-    const auto b = fit(fit.columns(k, t), cones);
+    const auto b = fit.nearest(k, fit.columns(k, t));
     const typename TractionFit<dim>::Columns values = b * fit.at_points().transpose();
     for (int q = 0; q < n_points; ++q)
     {

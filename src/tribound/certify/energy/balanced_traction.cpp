@@ -162,7 +162,7 @@ Matrix BalanceConditions<dim>::tangents(const State& state) const
     }
     if (z.empty()) return;
     const double det = form_.segments()[k].det();
-    tangent = det * fit_.tangent(fit_.columns(k, t), fit_.cones(k), z);
+    tangent = det * fit_.rates(k, fit_.columns(k, t), z);
     gram = det * fit_.gram(z);
   };
   parallel_for(of_facets.size(), on_facet);

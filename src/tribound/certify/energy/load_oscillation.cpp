@@ -9,6 +9,7 @@
 #include "tribound/certify/bound/poincare_korn.h"
 #include "tribound/certify/bound/transfer_terms.h"
 #include "tribound/certify/energy/meridian_oscillation.h"
+#include "tribound/certify/energy/traction_fit.h"
 #include "tribound/contact/nitsche/residual.h"
 #include "tribound/fem/polynomials.h"
 
@@ -98,11 +99,12 @@ std::map<std::pair<Index, int>, double> turning_losses(const contact::NitscheFor
   const auto n = static_cast<std::size_t>(rule.size());
   const int degree = form.space().degree();
   std::vector<double> theta(fem::polynomial_dimension(dim - 1, degree));
+  const ContactFrames<dim> frames(form);
   std::map<std::pair<Index, int>, double> squares;
   for (std::size_t k = 0; k < form.segments().size(); ++k)
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
-    if (segment.varying_normal == nullptr) continue;
+    if (segment.varying_normal == nullptr || is_low(form, frames, k)) continue;
     const std::vector<Point<dim>> projected = terms.project(static_cast<int>(k), t.subspan(k * n, n));
     double sum = 0;
     for (std::size_t q = 0; q < n; ++q)

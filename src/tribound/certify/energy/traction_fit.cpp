@@ -90,10 +90,25 @@ Eigen::MatrixXd bernstein_raised(int lower, int higher)
 }
 
 template <int dim>
-TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
+bool is_low(const contact::NitscheForm<dim>& form, const ContactFrames<dim>& frames, std::size_t k)
+{
+  if (!form.problem().is_axisymmetric() || !frames.turns(k)) return false;
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
+  bool result = false;
+  form.segments()[k].for_each_side(
+      [&](const contact::SegmentSide<dim>& side)
+      {
+        for (const Index v : mesh.cell(side.facet.cell))
+          result = result || form.problem().weight(mesh.vertex(v)) == 0;
+      });
+  return result;
+}
+
+template <int dim>
+TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form, int degree)
     : form_(form),
       frames_(form),
-      basis_(form.space().degree()),
+      basis_(degree),
       from_values_(bernstein_from_nodes(basis_)),
       at_points_(bernstein_at<dim>(basis_.degree(), form.facet_rule().points))
 {
@@ -102,6 +117,34 @@ TractionFit<dim>::TractionFit(const contact::NitscheForm<dim>& form)
   weighted_ = at_points_.transpose() * weights.asDiagonal();
   gram_ = weighted_ * at_points_;
   factors_ = CholeskyFactors(gram_);
+  const int lower = degree - ContactFrames<dim>::degree;
+  if (degree < form.space().degree() || lower < 0) return;
+  for (std::size_t k = 0; k < form.segments().size() && !low_; ++k)
+    if (is_low(form, frames_, k)) low_ = std::unique_ptr<const TractionFit>(new TractionFit(form, lower));
+}
+
+template <int dim>
+std::vector<TractionCone<dim>> TractionFit<dim>::narrowest(std::size_t k, std::size_t n) const
+{
+  const std::vector<TractionCone<dim>> all = cones(k);
+  return std::vector<TractionCone<dim>>(n, *std::ranges::min_element(all, {}, &TractionCone<dim>::limit));
+}
+
+template <int dim>
+auto TractionFit<dim>::nearest(std::size_t k, const Columns& t) const -> Columns
+{
+  if (!is_low(form_, frames_, k)) return (*this)(t, cones(k));
+  if (!low_) return Columns::Zero(dim, basis_.n_nodes());
+  return (*low_)(t, narrowest(k, low_->basis_.n_nodes())) *
+         bernstein_raised<dim>(low_->basis_.degree(), basis_.degree()).transpose();
+}
+
+template <int dim>
+Eigen::MatrixXd TractionFit<dim>::rates(std::size_t k, const Columns& t, std::span<const Columns> z) const
+{
+  if (!is_low(form_, frames_, k)) return tangent(t, cones(k), z);
+  if (!low_) return Eigen::MatrixXd::Zero(std::ssize(z), std::ssize(z));
+  return low_->tangent(t, narrowest(k, low_->basis_.n_nodes()), z);
 }
 
 template <int dim>
@@ -204,6 +247,8 @@ Eigen::MatrixXd TractionFit<dim>::gram(std::span<const Columns> z) const
   return result;
 }
 
+template bool is_low(const contact::NitscheForm<2>&, const ContactFrames<2>&, std::size_t);
+template bool is_low(const contact::NitscheForm<3>&, const ContactFrames<3>&, std::size_t);
 template struct TractionCone<2>;
 template struct TractionCone<3>;
 template Eigen::MatrixXd bernstein_at<2>(int, std::span<const Point<1>>);

@@ -4,6 +4,7 @@
 /// On a facet of Gamma_C, the polynomial nearest to a given traction among those whose coefficients obey the
 /// law, and its derivative by that traction. Only for the implementation of tractions.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,12 @@ template <int k>
 template <int dim>
 [[nodiscard]] Eigen::MatrixXd bernstein_raised(int lower, int higher);
 
+/// Whether t_h on the segment is made a polynomial of degree p though N varies: on a cell that touches the
+/// axis of a body of revolution, where the loss of another one has no bound. y_h then has the degree p - 2.
+template <int dim>
+[[nodiscard]] bool is_low(const contact::NitscheForm<dim>& form, const ContactFrames<dim>& frames,
+                          std::size_t k);
+
 /// Fits coefficients to tractions at the contact points of a facet. The products of the basis differ between
 /// facets only by the factor det of the segment; products here are without it. Keeps a reference to the form.
 template <int dim>
@@ -53,7 +60,7 @@ class TractionFit
   /// Vectors at the points of a facet, or coefficients.
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
 
-  explicit TractionFit(const contact::NitscheForm<dim>& form);
+  explicit TractionFit(const contact::NitscheForm<dim>& form) : TractionFit(form, form.space().degree()) {}
 
   /// The basis at the points, [point, coefficient].
   [[nodiscard]] const Eigen::MatrixXd& at_points() const { return at_points_; }
@@ -66,6 +73,11 @@ class TractionFit
   /// at the nodes; none is negative.
   [[nodiscard]] std::vector<TractionCone<dim>> cones(std::size_t k) const;
 
+  /// Coefficients of the t_h on facet k that is nearest to t, given at the points; of the degree p - 2 if
+  /// is_low(), raised to p: in the cones all the same, since the narrowest counts.
+  [[nodiscard]] Columns nearest(std::size_t k, const Columns& t) const;
+  /// The matrix (Dt_h(t)[z_i], z_j) for these.
+  [[nodiscard]] Eigen::MatrixXd rates(std::size_t k, const Columns& t, std::span<const Columns> z) const;
   /// Coefficients in the cones of the t_h nearest to t, given at the points. If the projection of t on
   /// polynomials is in the cones, it is taken; otherwise the coefficients are optimised one after another.
   [[nodiscard]] Columns operator()(const Columns& t, std::span<const TractionCone<dim>> cones) const;
@@ -76,6 +88,11 @@ class TractionFit
   [[nodiscard]] Eigen::MatrixXd gram(std::span<const Columns> z) const;
 
  private:
+  TractionFit(const contact::NitscheForm<dim>& form, int degree);
+
+  /// As many of the narrowest of the cones on facet k as a polynomial of lower degree has coefficients.
+  [[nodiscard]] std::vector<TractionCone<dim>> narrowest(std::size_t k, std::size_t n) const;
+
   const contact::NitscheForm<dim>& form_;
   ContactFrames<dim> frames_;
   fem::LagrangeBasis<dim - 1> basis_;
@@ -84,6 +101,7 @@ class TractionFit
   Eigen::MatrixXd weighted_;  ///< maps values at the points to moments
   Eigen::MatrixXd gram_;
   CholeskyFactors factors_;
+  std::unique_ptr<const TractionFit> low_;  ///< of degree p - 2; null where none is needed, or has none
 };
 
 }  // namespace tribound::certify
