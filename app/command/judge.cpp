@@ -58,10 +58,8 @@ GivenNumber parse_number(const std::string& text, std::size_t n_steps)
 std::vector<TheirStep> chosen_steps(const JudgeRequest& request, const case_file::Config& config)
 {
   if (config.is_axisymmetric)
-    throw InputError(
-        {.file = config.file, .key = "model"},
-        "bodies of revolution cannot be judged: there is no bound in the energy norm for them yet",
-        "a model in 3D of a sector");
+    throw InputError({.file = config.file, .key = "model"}, "bodies of revolution cannot be judged yet",
+                     "a model in 3D of a sector");
   if (!request.steps)
   {
     if (request.solutions.size() > 1)

@@ -17,6 +17,7 @@
 
 #include "support/meridian_problem.h"
 #include "tribound/certify/energy/balanced_traction.h"
+#include "verification/arched_block.h"
 #include "verification/energy_effectivity.h"
 
 namespace tribound::test
@@ -167,6 +168,145 @@ TEST(EnergyMeridian, IsABoundInRandomCases)
     EXPECT_LE(found[found.size() / 2], 1.6) << p;
     fmt::print("p = {}: effectivity {:.3f}, {:.3f}, {:.3f}\n", p, found.front(), found[found.size() / 2],
                found.back());
+  }
+}
+
+/// Two rings, or a ring around a disc, that press each other; their meshes match or not.
+MeridianProblem rings(unsigned seed, int p)
+{
+  RandomMeridian random{std::mt19937(seed)};
+  const double inner = seed % 2 == 0 ? 0 : 0.2;
+  const int n = 2;
+  const auto bend = [](const Point<2>& x) -> Point<2> {
+    return {x[0], x[1] + 0.1 * std::sin(3 * x[0]) * x[1] * (1 - x[1])};
+  };
+  const bool matches = seed % 3 != 2;
+  mesh::MeshData<2> data =
+      side_by_side(mapped(box<2>({inner, 0}, {0.6, 1}, {n, n}), bend),
+                   mapped(box<2>({0.6, 0}, {1, 1}, {n, matches ? n : 3}), bend), "_outer");
+  data.interfaces.push_back({{{{"right"}, {"left_outer"}}}});
+  const std::array<problem::ContactLaw, 3> laws = {Frictionless(), Tresca(0.005), Tied()};
+  const problem::ContactLaw& law = laws[matches ? seed / 2 % 3 : seed / 2 % 2];
+  ProblemData<2> of{.boundaries = {loaded<2>("right_outer", random.linear(0.03), random.linear(0.01)),
+                                   loaded<2>("top", random.linear(0.01), -0.02),
+                                   fixed<2>("bottom", free, 0.0), fixed<2>("bottom_outer", free, 0.0)},
+                    .material = lame(1, 0.3)};
+  of.pairs = {pair<2>("right", "left_outer", law)};
+  if (!std::holds_alternative<Tied>(law))
+    of.pairs[0].contact.gap = problem::Field(random.between(-0.03, -0.01));
+  return {renumbered(std::move(data), seed), of, {.degree = p, .newton = {.tolerance = 1e-11}}};
+}
+
+TEST(EnergyMeridian, IsABoundOfTwoBodies)
+{
+  for (unsigned seed = 0; seed < n_cases(18); ++seed)
+  {
+    const int p = 1 + static_cast<int>(seed / 3) % 3;
+    const MeridianProblem c = rings(seed, p);
+    const std::vector<double> u = c.solve().u;
+    const RicherReference<2> reference(c.form, c.method,
+                                       {.refinements = 2, .degree = std::min(p + 2, fem::max_degree)});
+    const certify::EnergyBound eta = bound_of(c, u);
+    const double found = expect_bound(reference, u, eta, fmt::format("rings {}", seed));
+    EXPECT_EQ(eta.transfer > 0, seed % 3 == 2);
+    EXPECT_LE(found, 4) << seed;
+    fmt::print("rings {}: p = {}: {:.3f}, of transfer {:.1e} of {:.1e}\n", seed, p, found, eta.transfer,
+               eta.bound);
+    std::fflush(stdout);
+  }
+}
+
+/// A cylinder on a round punch: directions of contact vary, also on the facet that touches the axis.
+TEST(EnergyMeridian, IsABoundWhereDirectionsVary)
+{
+  for (const int p : {1, 2, 3})
+    for (const bool is_free : {false, true})
+      for (const problem::ContactLaw& law :
+           {problem::ContactLaw(Frictionless()), problem::ContactLaw(Tresca(0.01))})
+      {
+        const problem::Surface punch = problem::sphere(point({0, -8}, 2), 8, problem::Positive::outside);
+        ProblemData<2> data{
+            .boundaries = {is_free ? loaded<2>("top", 0, -0.02) : fixed<2>("top", free, -0.02)},
+            .material = lame(1, 0.3)};
+        data.boundaries.push_back(obstacle<2>("bottom"));
+        data.boundaries.back().contact = contact_with(punch, law, 2, false);
+        const MeridianProblem c(random_meridian(0, 5, 1), data,
+                                {.degree = p, .newton = {.tolerance = 1e-11}});
+        const std::vector<double> u = c.solve().u;
+        const std::string name =
+            fmt::format("punch: p = {}, law {}, {}", p, law.index(), is_free ? "free" : "held");
+        const certify::EnergyBound eta = bound_of(c, u);
+        EXPECT_GT(eta.direction_remainder, 0) << name;
+        const RicherReference<2> reference(c.form, c.method,
+                                           {.refinements = 2, .degree = std::min(p + 1, fem::max_degree)});
+        const double found = expect_bound(reference, u, eta, name);
+        fmt::print("{}: {:.3f}\n", name, found);
+        std::fflush(stdout);
+      }
+}
+
+/// Every interval contains the value of a much richer solution; returns half its width over |value|.
+void expect_intervals(const MeridianProblem& c, const std::vector<problem::Quantity<2>>& quantities,
+                      std::span<const double> u, const std::string& name)
+{
+  const int p = c.space.degree();
+  const RicherReference<2> reference(c.form, c.method,
+                                     {.refinements = 2, .degree = std::min(p + 2, fem::max_degree)});
+  const certify::EnergyBound rich =
+      certify::EnergyEstimator<2>(reference.form(), c.method.solver, quantities)(reference.u());
+  const certify::EnergyBound bound = certify::EnergyEstimator<2>(c.form, c.method.solver, quantities)(u);
+  ASSERT_EQ(bound.reason, "") << name;
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+  {
+    const certify::QuantityInterval& interval = bound.quantities[i];
+    const double truth = rich.quantities[i].value;
+    EXPECT_EQ(interval.reason, "") << name << ", " << interval.name;
+    const double rounding = 1e-8 * std::abs(truth);  // of the richer solution
+    EXPECT_LE(interval.lower, truth + rounding) << name << ", " << interval.name;
+    EXPECT_GE(interval.upper, truth - rounding) << name << ", " << interval.name;
+    fmt::print("{}, {}: {:.5g} in [{:.5g}, {:.5g}], u_h {:.5g} ({}) {}\n", name, interval.name, truth,
+               interval.lower, interval.upper, interval.value, interval.basis, interval.note);
+  }
+  std::fflush(stdout);
+}
+
+TEST(EnergyMeridian, IntervalsHoldTheValues)
+{
+  using problem::QuantityKind;
+  const Point<2> e_r(1, 0);
+  const Point<2> e_z(0, 1);
+  for (unsigned seed = 0; seed < n_cases(12); ++seed)
+  {
+    RandomMeridian random{std::mt19937(seed)};
+    const double inner = seed % 2 == 0 ? 0 : 0.3;
+    const int p = 1 + static_cast<int>(seed / 2) % 3;
+    ProblemData<2> data =
+        random.data(inner, seed % 3 == 0 ? problem::ContactLaw(Frictionless()) : Tresca(0.02));
+    data.boundaries[1] = fixed<2>("top", free, -0.03);
+    MeridianProblem c(random_meridian(inner, 2 + static_cast<int>(seed % 2), seed), data,
+                      {.degree = p, .newton = {.tolerance = 1e-11}});
+    if (seed % 4 == 3) c.method.newton.max_steps = 1;
+    expect_intervals(
+        c,
+        {{.name = "energy"},
+         {.name = "work", .kind = QuantityKind::load_work},
+         {.name = "right", .kind = QuantityKind::mean_displacement, .boundary = "right", .direction = e_r},
+         {.name = "below", .kind = QuantityKind::mean_displacement, .boundary = "bottom", .direction = e_r},
+         {.name = "force", .kind = QuantityKind::contact_force, .boundary = "bottom", .direction = e_z},
+         {.name = "across", .kind = QuantityKind::contact_force, .boundary = "bottom", .direction = e_r}},
+        c.solve().u, fmt::format("seed {}", seed));
+    if (seed % 3 == 2) continue;
+    const MeridianProblem two = rings(seed, p);
+    expect_intervals(
+        two,
+        {{.name = "energy"},
+         {.name = "press", .kind = QuantityKind::contact_force, .boundary = "right", .direction = e_r},
+         {.name = "drag", .kind = QuantityKind::contact_force, .boundary = "right", .direction = e_z},
+         {.name = "outside",
+          .kind = QuantityKind::mean_displacement,
+          .boundary = "right_outer",
+          .direction = e_r}},
+        two.solve().u, fmt::format("rings {}", seed));
   }
 }
 
