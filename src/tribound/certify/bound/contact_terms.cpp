@@ -134,6 +134,14 @@ std::vector<Point<dim>> ContactTerms<dim>::project(int k, std::span<const Point<
 }
 
 template <int dim>
+std::vector<Point<dim>> ContactTerms<dim>::project_plainly(std::span<const Point<dim>> t) const
+{
+  std::vector<Point<dim>> coefficients = coefficients_of(t);
+  coefficients.resize(fem::polynomial_dimension(dim - 1, form_.space().degree()));
+  return coefficients;
+}
+
+template <int dim>
 auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions& t) const -> Fields
 {
   const auto without_gap = form_.traction_without_gap(u, k);

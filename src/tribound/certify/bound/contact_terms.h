@@ -70,6 +70,8 @@ class ContactTerms
   /// Coefficients of m Pi_k t in the orthonormal basis of the reference simplex, t given at the contact
   /// points of segment k.
   [[nodiscard]] std::vector<Point<dim>> project(int k, std::span<const Point<dim>> t) const;
+  /// Those of the projection on P^p without weight, of any problem.
+  [[nodiscard]] std::vector<Point<dim>> project_plainly(std::span<const Point<dim>> t) const;
 
  private:
   using FacetPoint = Point<dim - 1>;

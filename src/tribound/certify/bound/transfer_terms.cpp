@@ -82,7 +82,7 @@ std::map<Index, std::vector<FacetTransfer<dim>>> facet_transfers(const contact::
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (!segment.master) continue;
     const auto n = static_cast<std::size_t>(form.n_segment_points());
-    const std::vector<Point<dim>> q_k = terms.project(static_cast<int>(k), t.subspan(k * n, n));
+    const std::vector<Point<dim>> q_k = terms.project_plainly(t.subspan(k * n, n));
     segment.for_each_side(
         [&](const contact::SegmentSide<dim>& side)
         {

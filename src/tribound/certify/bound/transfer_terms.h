@@ -18,8 +18,8 @@ template <int dim>
 struct FacetTransfer
 {
   mesh::BoundaryFacet facet;
-  /// q = Pi_k t on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments k cover. The
-  /// parts of a group do not overlap; in 2D there is one group.
+  /// q = Pi_k t, without weight, on the slave, -q |k| / |Pi(k)| on the master, by the parts that the segments
+  /// k cover. The parts of a group do not overlap; in 2D there is one group.
   std::vector<std::vector<TractionPiece<dim>>> groups;
 };
 

@@ -105,7 +105,7 @@ std::map<std::pair<Index, int>, double> turning_losses(const contact::NitscheFor
   {
     const contact::ContactSegment<dim>& segment = form.segments()[k];
     if (segment.varying_normal == nullptr || is_low(form, frames, k)) continue;
-    const std::vector<Point<dim>> projected = terms.project(static_cast<int>(k), t.subspan(k * n, n));
+    const std::vector<Point<dim>> projected = terms.project_plainly(t.subspan(k * n, n));
     double sum = 0;
     for (std::size_t q = 0; q < n; ++q)
     {
