@@ -57,9 +57,6 @@ GivenNumber parse_number(const std::string& text, std::size_t n_steps)
 /// The steps to be judged: those that belong to the load steps of the case, or the one that is chosen.
 std::vector<TheirStep> chosen_steps(const JudgeRequest& request, const case_file::Config& config)
 {
-  if (config.is_axisymmetric)
-    throw InputError({.file = config.file, .key = "model"}, "bodies of revolution cannot be judged yet",
-                     "a model in 3D of a sector");
   if (!request.steps)
   {
     if (request.solutions.size() > 1)

@@ -33,10 +33,10 @@ bool follows_from_displacement(problem::QuantityKind kind)
 
 template <int dim>
 certify::ForeignSolution<dim> read(const JudgeRequest& request, const mesh::ImportedSolution& solution,
-                                   const mesh::Mesh<dim>& mesh)
+                                   const mesh::Mesh<dim>& mesh, bool is_axisymmetric)
 {
-  return request.interpolate ? certify::interpolated_solution<dim>(solution, mesh)
-                             : certify::foreign_solution<dim>(solution, mesh);
+  return request.interpolate ? certify::interpolated_solution<dim>(solution, mesh, is_axisymmetric)
+                             : certify::foreign_solution<dim>(solution, mesh, is_axisymmetric);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ JudgedStep<dim>::JudgedStep(const JudgedCase<dim>& judged_case, const JudgeReque
                             std::span<const GivenNumber> numbers, std::size_t number,
                             const std::optional<double>& t)
     : case_(judged_case),
-      theirs_(read<dim>(request, solution, case_.mesh)),
+      theirs_(read<dim>(request, solution, case_.mesh, case_.problem.is_axisymmetric())),
       space_(case_.mesh, theirs_.degree),
       given_(case_.quantities.size())
 {
@@ -115,7 +115,8 @@ template <int dim>
 void JudgedStep<dim>::measure_stress()
 {
   JudgementRecord& record = last_.record;
-  const std::vector<Point<dim>> forces = certify::boundary_forces<dim>(space_, theirs_.stress);
+  const std::vector<Point<dim>> forces =
+      certify::boundary_forces<dim>(space_, theirs_.stress, case_.problem.is_axisymmetric());
   for (std::size_t b = 0; b < forces.size(); ++b)
     record.forces.push_back({case_.mesh.boundary_names()[b], {forces[b].begin(), forces[b].end()}});
   const contact::NitscheForm<dim> form(case_.problem, space_, contact::default_gamma0(theirs_.degree));

@@ -105,44 +105,86 @@ std::vector<double> at_nodes(const fem::LagrangeSpace<dim>& space,
   return values;
 }
 
+/// u_r / r at a node of a cell, with the gradient of u there.
+template <int dim>
+double hoop_strain(const NestedDisplacement<dim>& displacement, const fem::LagrangeSpace<dim>& lattice,
+                   Index cell, int i, const Tensor<dim>& gradient)
+{
+  double r = 0;  // without rounding on the axis
+  for (int v = 0; v <= dim; ++v)
+    r += lattice.basis().node(i)[v] * lattice.mesh().vertex(lattice.mesh().cell(cell)[v])[0] /
+         lattice.degree();
+  const Point<dim> x = mesh::cell_map(lattice.mesh(), cell)(lattice.basis().node_point(i));
+  return contact::hoop_strain(r, displacement.value(cell, x)[0], gradient(0, 0));
+}
+
 /// Its stress, with the initial one.
 template <int dim>
 StressAt<dim> stress_of(const problem::Problem<dim>& problem, const NestedDisplacement<dim>& displacement)
 {
   return [&](const fem::LagrangeSpace<dim>& lattice) -> io::TensorField<dim>
   {
-    return {"stress", [&](Index cell, std::span<Tensor<dim>> values)
-            {
-              const int region = lattice.mesh().region(cell);
-              const mesh::CellMap<dim> map = mesh::cell_map(lattice.mesh(), cell);
-              for (std::size_t i = 0; i < values.size(); ++i)
-              {
-                const Point<dim> x = map(lattice.basis().node_point(static_cast<int>(i)));
-                values[i] = contact::sigma<dim>(problem.material(region), displacement.gradient(cell, x));
-                if (problem.regions()[region].has_initial_stress())
-                  values[i] += problem.initial_stress(region, x);
-              }
-            }};
+    io::TensorField<dim> field{
+        "stress", [&](Index cell, std::span<Tensor<dim>> values)
+        {
+          const int region = lattice.mesh().region(cell);
+          const mesh::CellMap<dim> map = mesh::cell_map(lattice.mesh(), cell);
+          for (std::size_t i = 0; i < values.size(); ++i)
+          {
+            const auto node = static_cast<int>(i);
+            const Point<dim> x = map(lattice.basis().node_point(node));
+            const Tensor<dim> gradient = displacement.gradient(cell, x);
+            values[i] = problem.is_axisymmetric()
+                            ? contact::sigma<dim>(problem.material(region), gradient,
+                                                  hoop_strain(displacement, lattice, cell, node, gradient))
+                            : contact::sigma<dim>(problem.material(region), gradient);
+            if (problem.regions()[region].has_initial_stress())
+              values[i] += problem.initial_stress(region, x);
+          }
+        }};
+    if (problem.is_axisymmetric())
+      field.hoop = [&](Index cell, std::span<double> values)
+      {
+        const mesh::CellMap<dim> map = mesh::cell_map(lattice.mesh(), cell);
+        for (int i = 0; i < std::ssize(values); ++i)
+        {
+          const Tensor<dim> gradient = displacement.gradient(cell, map(lattice.basis().node_point(i)));
+          values[i] = io::added_around_axis(problem.material(lattice.mesh().region(cell)),
+                                            hoop_strain(displacement, lattice, cell, i, gradient));
+        }
+      };
+    return field;
   };
 }
 
 /// The stress that was read, by its values at the nodes of the cells of their space.
 template <int dim>
-StressAt<dim> stress_read(const fem::LagrangeSpace<dim>& space, std::span<const Tensor<dim>> stress)
+StressAt<dim> stress_read(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                          const certify::ForeignSolution<dim>& theirs)
 {
-  return [&space, stress](const fem::LagrangeSpace<dim>& lattice) -> io::TensorField<dim>
+  return [&](const fem::LagrangeSpace<dim>& lattice) -> io::TensorField<dim>
   {
-    return {"stress", [table = space.basis().tabulate(lattice.basis().node_points()), stress](
-                          Index cell, std::span<Tensor<dim>> values)
-            {
-              const auto n_nodes = static_cast<std::size_t>(table.n_nodes);
-              for (int q = 0; q < table.n_points; ++q)
-              {
-                values[q].setZero();
-                for (std::size_t i = 0; i < n_nodes; ++i)
-                  values[q] += table.values_at(q)[i] * stress[n_nodes * cell + i];
-              }
-            }};
+    const fem::Tabulation<dim> table = space.basis().tabulate(lattice.basis().node_points());
+    const auto at = [table](Index cell, int q, const auto& nodal, auto value)
+    {
+      const auto n_nodes = static_cast<std::size_t>(table.n_nodes);
+      for (std::size_t i = 0; i < n_nodes; ++i) value += table.values_at(q)[i] * nodal[n_nodes * cell + i];
+      return value;
+    };
+    io::TensorField<dim> field{"stress", [&theirs, at](Index cell, std::span<Tensor<dim>> values)
+                               {
+                                 for (int q = 0; q < std::ssize(values); ++q)
+                                   values[q] = at(cell, q, theirs.stress, Tensor<dim>(Tensor<dim>::Zero()));
+                               }};
+    if (!theirs.hoop.empty())  // what zz has beside that of plane strain
+      field.hoop = [&problem, &space, &theirs, at](Index cell, std::span<double> values)
+      {
+        const double ratio = io::out_of_plane_ratio(problem.material(space.mesh().region(cell)));
+        for (int q = 0; q < std::ssize(values); ++q)
+          values[q] = at(cell, q, theirs.hoop, 0.0) -
+                      ratio * at(cell, q, theirs.stress, Tensor<dim>(Tensor<dim>::Zero())).trace();
+      };
+    return field;
   };
 }
 
@@ -177,8 +219,9 @@ io::Json judged_surfaces(const contact::NitscheForm<dim>& form, const certify::F
   const mesh::Mesh<dim>& mesh = form.space().mesh();
   const NestedDisplacement<dim> their_displacement(mesh, form.space(), theirs.u);
   const NestedDisplacement<dim> our_displacement(mesh, space, u);
-  const StressAt<dim> their_stress = theirs.stress.empty() ? stress_of(form.problem(), their_displacement)
-                                                           : stress_read<dim>(form.space(), theirs.stress);
+  const StressAt<dim> their_stress = theirs.stress.empty()
+                                         ? stress_of(form.problem(), their_displacement)
+                                         : stress_read<dim>(form.problem(), form.space(), theirs);
   const Surface shown = sample_surface<dim>(form, theirs.u, their_stress, limits);
   const Surface ours = sample_surface<dim>(form, at_nodes(form.space(), our_displacement),
                                            stress_of(form.problem(), our_displacement), limits);

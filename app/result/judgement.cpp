@@ -73,6 +73,16 @@ std::string number_text(const JudgedNumber& number)
                                    wrong->lower, wrong->upper, parts));
 }
 
+std::string force_text(const JudgedForce& force, const io::CaseFacts& facts)
+{
+  const std::string unit = facts.behind(problem::UnitOf::force);
+  if (facts.is_axisymmetric)
+    return line("force", fmt::format("at \"{}\": axial {:.5g}, in equilibrium {:.5g}{}", force.boundary,
+                                     force.theirs[1], force.ours[1], unit));
+  return line("force", fmt::format("at \"{}\": ({:.5g}), in equilibrium ({:.5g}){}", force.boundary,
+                                   fmt::join(force.theirs, ", "), fmt::join(force.ours, ", "), unit));
+}
+
 io::Json json(const certify::ErrorInterval& interval)
 {
   return {interval.lower, std::isfinite(interval.upper) ? io::Json(interval.upper) : io::Json(nullptr)};
@@ -200,10 +210,7 @@ std::string judgement_text(const JudgementRecord& r, const std::string& director
     text += paragraph("errors", "not bounded: " + r.reason);
   for (const JudgedNumber& number : r.numbers) text += number_text(number);
   for (const JudgedForce& force : r.forces)
-    if (!force.ours.empty())
-      text += line("force", fmt::format("at \"{}\": ({:.5g}), in equilibrium ({:.5g}){}", force.boundary,
-                                        fmt::join(force.theirs, ", "), fmt::join(force.ours, ", "),
-                                        r.facts.behind(problem::UnitOf::force)));
+    if (!force.ours.empty()) text += force_text(force, r.facts);
   if (r.imbalance)
     text += line("balance",
                  fmt::format("the forces of their stress miss the loads by {}", percent(*r.imbalance)));
@@ -230,6 +237,7 @@ io::Json judgement_object(const JudgementRecord& r)
       {"schema", judgement_schema},
       {"title", r.facts.title},
       {"file", r.facts.file},
+      {"model", io::model_json(r.facts)},
       {"d", r.facts.dimension},
       {"p", r.facts.degree},
       {"friction", r.facts.friction},

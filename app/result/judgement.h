@@ -10,6 +10,7 @@
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/energy/quantity_interval.h"
 #include "tribound/certify/truth/judgement.h"
+#include "tribound/certify/truth/their_forces.h"
 #include "tribound/io/file/json_forward.h"
 #include "tribound/io/record/facts.h"
 

@@ -1,5 +1,6 @@
 // The page of a judgement, with the data of app/page/judgement_page.cpp: how wrong the solution of another program is.
 
+import { axisNames, nameAxes, showsMeridian } from "./axes.js";
 import { count, element, number, section, table, withoutNoise } from "./dom.js";
 import { definitions, filesSection, timesAndMachine } from "./facts.js";
 import { errorsSection, judgedNumbersSection } from "./judgement_charts.js";
@@ -34,9 +35,10 @@ function guaranteeSection({ displacement, stress, quantities, guaranteed_for: ta
 function forcesSection({ forces, d }) {
   const known = forces.filter(({ ours }) => ours.length > 0);
   if (known.length === 0) return null;
-  const axes = ["x", "y", "z"].slice(0, d);
+  const first = showsMeridian() ? 1 : 0; // around the axis only the axial forces do not cancel
+  const axes = axisNames(d).slice(first);
   const size = known.flatMap(({ theirs, ours }) => [...theirs, ...ours]).reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);
-  const cells = (force) => withoutNoise(force, size).map((value) => number(value, 5));
+  const cells = (force) => withoutNoise(force.slice(first), size).map((value) => number(value, 5));
   const heads = (whose) => axes.map((axis) => headed(`#${whose}, ${axis}`, unit("force")));
   return section("forces", "Forces", "Forces of their stress", "On the body at each boundary; those of ours are in equilibrium with all loads.",
     table(["boundary", ...heads("theirs"), ...heads("in equilibrium")], known.map(({ boundary, theirs, ours }) => [boundary, ...cells(theirs), ...cells(ours)])));
@@ -61,6 +63,7 @@ function readSection(judgement) {
 /** `of_steps`: of all load steps, where these were judged; `judgement` is then that of the worst. */
 export function judgementPage({ judgement, of_steps: ofSteps, program, machine, files, surfaces }) {
   nameUnits(judgement.units);
+  nameAxes(judgement.model);
   const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
   const sections = [stepsSection(ofSteps), fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
     section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);

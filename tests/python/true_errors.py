@@ -1,6 +1,7 @@
 """Errors of fields on nested meshes of simplices, with NumPy alone: this shares nothing with the program.
 
-Plane problems are those of plane strain.
+Plane problems are those of plane strain. Of a body of revolution the mesh is the meridian, and integrals are
+those over the full circle.
 """
 
 from dataclasses import dataclass
@@ -96,7 +97,9 @@ def parents(coarse: Floats, fine: Floats) -> Ints:
     return parent
 
 
-def squared_errors(theirs: Fields, reference: Fields, E: float | Floats, nu: float | Floats) -> Squares:
+def squared_errors(
+    theirs: Fields, reference: Fields, E: float | Floats, nu: float | Floats, of_revolution: bool = False
+) -> Squares:
     """||v - u||^2 and ||s - sigma(u)||^2 per cell; E and nu may be those of each of their cells."""
     constants = (E * nu / (1 + nu) / (1 - 2 * nu), E / 2 / (1 + nu))
     lame, mu = (np.broadcast_to(constant, len(theirs.corners)) for constant in constants)
@@ -105,31 +108,46 @@ def squared_errors(theirs: Fields, reference: Fields, E: float | Floats, nu: flo
     for first in range(0, len(parent), BATCH):
         cells = slice(first, first + BATCH)
         own = parent[cells]
-        for total, square in zip(squares, _batch(theirs, reference, cells, own, lame[own], mu[own])):
+        batch = _batch(theirs, reference, cells, own, lame[own], mu[own], of_revolution)
+        for total, square in zip(squares, batch):
             np.add.at(total, own, square)
     return Squares(squares[0], None if theirs.stress is None else squares[1])
 
 
 def _batch(
-    theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats
+    theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats, of_revolution: bool
 ) -> list[Floats]:
     """The squares over each of these cells of the reference, which lie in `own` of theirs."""
     corners, outer = reference.corners[cells], theirs.corners[own]
     d = corners.shape[2]
     edges, inverse = corners[:, 1:] - corners[:, :1], np.linalg.inv(outer[:, 1:] - outer[:, :1])
-    x, weights = rule(d, max(theirs.degree, reference.degree) + d - 1)
-    local = (corners[:, :1] + x @ edges - outer[:, :1]) @ inverse
+    x, weights = rule(d, max(theirs.degree, reference.degree) + d - 1 + 10 * of_revolution)
+    points = corners[:, :1] + x @ edges
+    local = (points - outer[:, :1]) @ inverse
     here, there = Polynomials(reference.indices), Polynomials(theirs.indices)
     strain = _strain(here.gradients(x)[None], reference.displacement[cells], np.linalg.inv(edges))
-    difference = _strain(there.gradients(local), theirs.displacement[own], inverse) - strain
+    their_strain = _strain(there.gradients(local), theirs.displacement[own], inverse)
+    measure = np.abs(np.linalg.det(edges))[:, None] * weights
+    if of_revolution:
+        d, r = 3, points[..., 0]
+        strain = _with_hoop(strain, (reference.displacement[cells][..., 0] @ here.values(x).T) / r)
+        u_r = np.einsum("cqn,cn->cq", there.values(local), theirs.displacement[own][..., 0])
+        their_strain = _with_hoop(their_strain, u_r / r)
+        measure = 2 * np.pi * r * measure
+    difference = their_strain - strain
     lame, mu = lame[:, None, None, None], mu[:, None, None, None]
     densities = [difference * (lame * _trace(difference) + 2 * mu * difference)]
     if theirs.stress is not None:
         stress = np.einsum("cqn,cnij->cqij", there.values(local), theirs.stress[own][..., TENSOR[d]])
         stress = stress - lame * _trace(strain) - 2 * mu * strain
         densities.append(stress * (stress - lame / (d * lame + 2 * mu) * _trace(stress)) / (2 * mu))
-    measure = np.abs(np.linalg.det(edges))
-    return [measure * (density.sum(axis=(2, 3)) @ weights) for density in densities]
+    return [(measure * density.sum(axis=(2, 3))).sum(axis=1) for density in densities]
+
+
+def _with_hoop(strain: Floats, hoop: Floats) -> Floats:
+    whole = np.zeros((*hoop.shape, 3, 3))
+    whole[..., :2, :2], whole[..., 2, 2] = strain, hoop
+    return whole
 
 
 def _strain(gradients: Floats, displacement: Floats, inverse: Floats) -> Floats:

@@ -17,6 +17,7 @@
 #include "support/meshes.h"
 #include "tribound/adapt/level.h"
 #include "tribound/certify/truth/solution_error.h"
+#include "tribound/certify/truth/their_forces.h"
 #include "tribound/fem/nested.h"
 #include "tribound/io/fields/tensor_field.h"
 #include "tribound/mesh/bisect.h"

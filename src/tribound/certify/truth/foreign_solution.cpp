@@ -29,7 +29,13 @@ template <int dim>
 class Carrier : private ForeignElements<dim>
 {
  public:
-  using ForeignElements<dim>::ForeignElements;
+  Carrier(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh, bool is_axisymmetric)
+      : ForeignElements<dim>(theirs, mesh), is_axisymmetric_(is_axisymmetric)
+  {
+    if (is_axisymmetric && !theirs.stress.empty() && !theirs.stress_has_zz)
+      throw InputError(where_, "has a stress without zz, which in bodies of revolution is the hoop stress",
+                       "xx, yy, zz and xy are rr, zz, the hoop stress and rz");
+  }
 
   ForeignSolution<dim> carry()
   {
@@ -214,9 +220,9 @@ class Carrier : private ForeignElements<dim>
   void start(const fem::LagrangeSpace<dim>& space)
   {
     result_.u.assign(space.n_dofs(), std::numeric_limits<double>::quiet_NaN());
-    if (!theirs_.stress.empty())
-      result_.stress.assign(static_cast<std::size_t>(mesh_.n_cells()) * space.basis().n_nodes(),
-                            Tensor<dim>::Zero());
+    const std::size_t n_values = static_cast<std::size_t>(mesh_.n_cells()) * space.basis().n_nodes();
+    if (!theirs_.stress.empty()) result_.stress.assign(n_values, Tensor<dim>::Zero());
+    if (!theirs_.stress.empty() && is_axisymmetric_) result_.hoop.assign(n_values, 0.0);
     scale_ = 0;
     for (const Point<3>& u : theirs_.displacement)
       if (u.allFinite()) scale_ = std::max(scale_, u.cwiseAbs().maxCoeff());
@@ -236,6 +242,7 @@ class Carrier : private ForeignElements<dim>
       if (!std::ranges::all_of(s, [](double value) { return std::isfinite(value); }))
         fail_value(term.node, "stress");
     }
+    if (is_axisymmetric_ && is_on_axis(space, cell, i)) u[0] = rounded_on_axis(terms.front().node, u[0]);
     const Index node = space.cell_nodes(cell)[i];
     for (int d = 0; d < dim; ++d)
     {
@@ -248,11 +255,31 @@ class Carrier : private ForeignElements<dim>
       value = u[d];
     }
     if (theirs_.stress.empty()) return;
-    Tensor<dim>& tensor = result_.stress[static_cast<std::size_t>(cell) * space.basis().n_nodes() + i];
+    const std::size_t place = static_cast<std::size_t>(cell) * space.basis().n_nodes() + i;
+    Tensor<dim>& tensor = result_.stress[place];
+    if (is_axisymmetric_) result_.hoop[place] = s[2];
     if constexpr (dim == 2)
       tensor << s[0], s[3], s[3], s[1];
     else
       tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+  }
+
+  [[nodiscard]] bool is_on_axis(const fem::LagrangeSpace<dim>& space, Index cell, int i) const
+  {
+    for (int v = 0; v <= dim; ++v)
+      if (space.basis().node(i)[v] > 0 && mesh_.vertex(mesh_.cell(cell)[v])[0] > 0) return false;
+    return true;
+  }
+
+  /// Where u_r is more than rounding, the energy is infinite.
+  double rounded_on_axis(Index node, double u_r)
+  {
+    if (std::abs(u_r) > 1e-6 * scale_)
+      throw InputError(where_,
+                       fmt::format("moves node {} of the axis by {} away from it", number_of(node), u_r),
+                       "a displacement with u_r = 0 on the axis: else its energy is infinite");
+    axis_displacement_ = std::max(axis_displacement_, std::abs(u_r));
+    return 0;
   }
 
   void finish(const std::string& function)
@@ -261,6 +288,8 @@ class Carrier : private ForeignElements<dim>
     if (result_.curved_distance > straight_)
       result_.read_as += fmt::format("; on straight cells, from which curved edges are up to {:.3g} away",
                                      result_.curved_distance);
+    if (axis_displacement_ > 0)
+      result_.read_as += fmt::format("; u_r on the axis, up to {:.3g}, as 0", axis_displacement_);
   }
 
   [[noreturn]] void fail_value(Index node, std::string_view what) const
@@ -269,26 +298,30 @@ class Carrier : private ForeignElements<dim>
                      "a number for every node");
   }
 
-  double scale_ = 0;  ///< the largest component of their displacement
+  bool is_axisymmetric_;
+  double scale_ = 0;              ///< the largest component of their displacement
+  double axis_displacement_ = 0;  ///< the largest u_r there
 };
 
 }  // namespace
 
 template <int dim>
-ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh)
+ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh,
+                                      bool is_axisymmetric)
 {
-  return Carrier<dim>(theirs, mesh).carry();
+  return Carrier<dim>(theirs, mesh, is_axisymmetric).carry();
 }
 
 template <int dim>
-ForeignSolution<dim> interpolated_solution(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh)
+ForeignSolution<dim> interpolated_solution(const mesh::ImportedSolution& theirs, const mesh::Mesh<dim>& mesh,
+                                           bool is_axisymmetric)
 {
-  return Carrier<dim>(theirs, mesh).interpolate();
+  return Carrier<dim>(theirs, mesh, is_axisymmetric).interpolate();
 }
 
-template ForeignSolution<2> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&);
-template ForeignSolution<3> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&);
-template ForeignSolution<2> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&);
-template ForeignSolution<3> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&);
+template ForeignSolution<2> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&, bool);
+template ForeignSolution<3> foreign_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&, bool);
+template ForeignSolution<2> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<2>&, bool);
+template ForeignSolution<3> interpolated_solution(const mesh::ImportedSolution&, const mesh::Mesh<3>&, bool);
 
 }  // namespace tribound::certify

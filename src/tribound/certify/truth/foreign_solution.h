@@ -20,6 +20,7 @@ struct ForeignSolution
   int degree = 1;                     ///< q
   std::vector<double> u{};            ///< at the degrees of freedom of LagrangeSpace(mesh, q)
   std::vector<Tensor<dim>> stress{};  ///< [cell n_nodes + node]; empty: none
+  std::vector<double> hoop{};         ///< beside each stress of a body of revolution that around the axis
   double node_distance = 0;           ///< largest distance of a node from its vertex or its place on a cell
   double curved_distance = 0;         ///< of nodes from their places in the straight element
   bool is_exact = true;               ///< whether it is their function, not one with its values at nodes
@@ -34,15 +35,18 @@ struct ForeignSolution
 /// P^q for the largest q whose nodes are all among them.
 ///
 /// Throws InputError for another mesh (tells whether it is larger or shifted), a node without a value or with
-/// two, points that may belong to either of two bodies.
+/// two, points that may belong to either of two bodies. Of a body of revolution u_r has to vanish on the axis
+/// up to rounding, which is left out, and a stress has to have a component zz, which is that around the axis.
 template <int dim>
 [[nodiscard]] ForeignSolution<dim> foreign_solution(const mesh::ImportedSolution& theirs,
-                                                    const mesh::Mesh<dim>& mesh);
+                                                    const mesh::Mesh<dim>& mesh,
+                                                    bool is_axisymmetric = false);
 
 /// The function on the mesh that takes, at the nodes of the degree of theirs, the values of their function on
 /// another mesh, which covers this one. Throws InputError where it does not, and for points without elements.
 template <int dim>
 [[nodiscard]] ForeignSolution<dim> interpolated_solution(const mesh::ImportedSolution& theirs,
-                                                         const mesh::Mesh<dim>& mesh);
+                                                         const mesh::Mesh<dim>& mesh,
+                                                         bool is_axisymmetric = false);
 
 }  // namespace tribound::certify

@@ -9,9 +9,9 @@
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/truth/solution_error.h"
 #include "tribound/fem/nested.h"
-#include "tribound/fem/quadrature.h"
 #include "tribound/mesh/bodies.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -41,10 +41,12 @@ std::vector<Index> largest(std::span<const double> cells, double part)
   return order;
 }
 
+/// Of an axisymmetric body that of one radian.
 template <int dim>
-double volume_of(const mesh::Mesh<dim>& mesh, Index cell)
+double volume_of(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, Index cell)
 {
-  return mesh::cell_map(mesh, cell).measure();
+  return mesh::cell_map(mesh, cell).measure() *
+         problem::mean_weight(problem, mesh::points_of(mesh.vertices(), mesh.cell(cell)));
 }
 
 template <int dim>
@@ -56,7 +58,8 @@ Point<dim> centre_of(const mesh::Mesh<dim>& mesh, Index cell)
 }
 
 template <int dim>
-ErrorCore core_of(const mesh::Mesh<dim>& mesh, const JudgedField& field, double bound)
+ErrorCore core_of(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, const JudgedField& field,
+                  double bound, double doubt)
 {
   ErrorCore core;
   const std::vector<Index> cells = largest(field.cells, core_part);
@@ -67,13 +70,13 @@ ErrorCore core_of(const mesh::Mesh<dim>& mesh, const JudgedField& field, double 
   {
     const double own = field.cells[c] * field.cells[c];
     square += own;
-    volume += volume_of(mesh, c);
+    volume += volume_of(problem, mesh, c);
     centre += own * centre_of(mesh, c);
   }
   if (square == 0) return core;
   double all = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c) all += volume_of(mesh, c);
-  const double inside = error_interval(std::sqrt(square), bound).lower;
+  for (Index c = 0; c < mesh.n_cells(); ++c) all += volume_of(problem, mesh, c);
+  const double inside = error_interval(std::sqrt(square), bound, doubt).lower;
   core.share = std::pow(inside / field.error.upper, 2);
   core.volume = volume / all;
   core.n_cells = cells.size();
@@ -83,18 +86,20 @@ ErrorCore core_of(const mesh::Mesh<dim>& mesh, const JudgedField& field, double 
 }
 
 template <int dim>
-JudgedField judged(const mesh::Mesh<dim>& mesh, std::vector<double> cells, double bound)
+JudgedField judged(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                   std::vector<double> cells, double bound, double doubt)
 {
   JudgedField field;
   field.cells = std::move(cells);
+  for (double& distance : field.cells) distance *= std::sqrt(problem.full_circle());
   std::vector<double> squares(mesh.region_names().size(), 0.0);
   for (Index c = 0; c < mesh.n_cells(); ++c) squares[mesh.region(c)] += field.cells[c] * field.cells[c];
   field.distance = std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0));
-  field.error = error_interval(field.distance, bound);
+  field.error = error_interval(field.distance, bound, doubt);
   for (std::size_t r = 0; r < squares.size(); ++r)
     field.regions.push_back(
-        {mesh.region_names()[r], std::sqrt(squares[r]), error_interval(std::sqrt(squares[r]), bound)});
-  field.core = core_of(mesh, field, bound);
+        {mesh.region_names()[r], std::sqrt(squares[r]), error_interval(std::sqrt(squares[r]), bound, doubt)});
+  field.core = core_of(problem, mesh, field, bound, doubt);
   field.halving = largest(field.cells, halving_part);
   return field;
 }
@@ -128,11 +133,13 @@ Point<dim> value_at(const fem::LagrangeSpace<dim>& space, std::span<const double
   return value;
 }
 
-/// The normal equations of the nearest rigid motion of a body.
+/// The normal equations of the nearest rigid motion of a body. Of an axisymmetric one only that along the
+/// axis is not fixed to 0.
 template <int dim>
 struct RigidFit
 {
   static constexpr int n = dim == 2 ? 3 : 6;
+  bool is_axisymmetric = false;
   Point<dim> centroid = Point<dim>::Zero();
   double volume = 0;
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
@@ -150,23 +157,33 @@ struct RigidFit
     a += weight * motions.transpose() * motions;
     b += weight * motions.transpose() * difference;
   }
+
+  /// Translations, then rotations.
+  [[nodiscard]] Eigen::VectorXd motion() const
+  {
+    if (!is_axisymmetric) return solve_regular(a, b);
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(n);
+    along[1] = b(1) / a(1, 1);
+    return along;
+  }
 };
 
 /// Fitted at the vertices of the cells of u, weighted by their volumes.
 template <int dim>
-std::vector<RigidDifference> rigid_differences(const fem::LagrangeSpace<dim>& their_space,
+std::vector<RigidDifference> rigid_differences(const problem::Problem<dim>& problem,
+                                               const fem::LagrangeSpace<dim>& their_space,
                                                std::span<const double> v,
                                                const fem::LagrangeSpace<dim>& space,
                                                std::span<const double> u)
 {
   const mesh::Mesh<dim>& mesh = their_space.mesh();
   const mesh::Bodies bodies = mesh::number_bodies(mesh);
-  std::vector<RigidFit<dim>> fits(bodies.n);
+  std::vector<RigidFit<dim>> fits(bodies.n, {.is_axisymmetric = problem.is_axisymmetric()});
   for (Index c = 0; c < mesh.n_cells(); ++c)
   {
     RigidFit<dim>& fit = fits[bodies.of_cell[c]];
-    fit.centroid += volume_of(mesh, c) * centre_of(mesh, c);
-    fit.volume += volume_of(mesh, c);
+    fit.centroid += volume_of(problem, mesh, c) * centre_of(mesh, c);
+    fit.volume += volume_of(problem, mesh, c);
   }
   for (RigidFit<dim>& fit : fits) fit.centroid /= fit.volume;
   for (const auto& [theirs, ours] : cell_pairs(mesh, space.mesh()))
@@ -178,7 +195,7 @@ std::vector<RigidDifference> rigid_differences(const fem::LagrangeSpace<dim>& th
       const Point<dim> difference =
           value_at<dim>(their_space, v, theirs, fem::reference_point(map, x)) -
           value_at<dim>(space, u, ours, fem::reference_point(mesh::cell_map(space.mesh(), ours), x));
-      fits[bodies.of_cell[theirs]].add(volume_of(space.mesh(), ours), x, difference);
+      fits[bodies.of_cell[theirs]].add(volume_of(problem, space.mesh(), ours), x, difference);
     }
   }
   std::vector<RigidDifference> result;
@@ -187,7 +204,7 @@ std::vector<RigidDifference> rigid_differences(const fem::LagrangeSpace<dim>& th
     RigidFit<dim>& fit = fits[body];
     space.mesh().ranks().sum(std::span(fit.a.data(), fit.a.size()));
     space.mesh().ranks().sum(std::span(fit.b.data(), fit.b.size()));
-    const Eigen::MatrixXd motion = solve_regular(fit.a, fit.b);
+    const Eigen::VectorXd motion = fit.motion();
     RigidDifference& found = result.emplace_back();
     found.body = body;
     found.translation.assign(motion.data(), motion.data() + dim);
@@ -198,16 +215,18 @@ std::vector<RigidDifference> rigid_differences(const fem::LagrangeSpace<dim>& th
 
 }  // namespace
 
-ErrorInterval error_interval(double distance, double bound)
+// A square up to the part `doubt` of itself is that of a root up to the same part, at most.
+
+ErrorInterval error_interval(double distance, double bound, double doubt)
 {
-  return {std::max(0.0, distance * (1 - rounding) - bound * (1 + rounding)),
-          (distance + bound) * (1 + rounding)};
+  return {std::max(0.0, distance * (1 - rounding - doubt) - bound * (1 + rounding)),
+          (distance * (1 + doubt) + bound) * (1 + rounding)};
 }
 
-ErrorInterval relative_interval(const ErrorInterval& error, double norm, double bound)
+ErrorInterval relative_interval(const ErrorInterval& error, double norm, double bound, double doubt)
 {
-  ErrorInterval relative{error.lower / ((norm + bound) * (1 + rounding))};
-  const double least = norm * (1 - rounding) - bound;
+  ErrorInterval relative{error.lower / ((norm * (1 + doubt) + bound) * (1 + rounding))};
+  const double least = norm * (1 - rounding - doubt) - bound;
   if (least > 0) relative.upper = error.upper / least;
   return relative;
 }
@@ -219,87 +238,29 @@ Judgement judge(const problem::Problem<dim>& problem, const fem::LagrangeSpace<d
 {
   LocalError error = solution_error<dim>(problem, their_space, theirs.u, space, u);
   Judgement judgement;
+  bound *= std::sqrt(problem.full_circle());
   judgement.bound = bound;
-  judgement.energy_norm = std::sqrt(error.reference_energy);
-  judgement.displacement = judged(their_space.mesh(), std::move(error.energy), bound);
+  judgement.energy_norm = std::sqrt(problem.full_circle() * error.reference_energy);
+  judgement.displacement = judged(problem, their_space.mesh(), std::move(error.energy), bound, error.doubt);
   JudgedField& displacement = judgement.displacement;
-  displacement.relative = relative_interval(displacement.error, judgement.energy_norm, bound);
+  displacement.relative = relative_interval(displacement.error, judgement.energy_norm, bound, error.doubt);
   if (!theirs.stress.empty())
   {
+    StressError of_stress = stress_error<dim>(problem, their_space, theirs.stress, theirs.hoop, space, u);
     judgement.stress =
-        judged(their_space.mesh(), stress_error<dim>(problem, their_space, theirs.stress, space, u), bound);
+        judged(problem, their_space.mesh(), std::move(of_stress.cells), bound, of_stress.doubt);
     const bool has_initial = std::ranges::any_of(
         problem.regions(), [](const problem::Region<dim>& region) { return region.has_initial_stress(); });
     if (!has_initial)
-      judgement.stress->relative = relative_interval(judgement.stress->error, judgement.energy_norm, bound);
+      judgement.stress->relative =
+          relative_interval(judgement.stress->error, judgement.energy_norm, bound, error.doubt);
   }
   judgement.factor = error.own_energy > 0 ? error.product / error.own_energy : 0;
   judgement.doubt = doubt(error);
-  judgement.rigid = rigid_differences<dim>(their_space, theirs.u, space, u);
+  judgement.rigid = rigid_differences<dim>(problem, their_space, theirs.u, space, u);
   return judgement;
 }
 
-/// Calls use(facet, weight, s n, n) at the points of a rule on the facets of boundaries.
-template <int dim, class Use>
-void for_each_traction(const fem::LagrangeSpace<dim>& their_space, std::span<const Tensor<dim>> stress,
-                       const Use& use)
-{
-  const mesh::Mesh<dim>& mesh = their_space.mesh();
-  const auto n_nodes = static_cast<std::size_t>(their_space.basis().n_nodes());
-  const fem::Quadrature<dim - 1> rule = fem::quadrature<dim - 1>(their_space.degree());
-  const fem::FacetTabulation<dim> tables = fem::tabulate_on_facets<dim>(their_space.basis(), rule.points);
-  for (std::size_t f = 0; f < mesh.boundary().size(); ++f)
-  {
-    const mesh::BoundaryFacet& facet = mesh.boundary()[f];
-    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const fem::Tabulation<dim>& table = tables.on_facet[facet.local];
-    for (int q = 0; q < rule.size(); ++q)
-    {
-      Tensor<dim> s = Tensor<dim>::Zero();
-      for (std::size_t i = 0; i < n_nodes; ++i) s += table.values_at(q)[i] * stress[n_nodes * facet.cell + i];
-      use(f, rule.weights[q] * geometry.det(), Point<dim>(s * geometry.normal), geometry.normal);
-    }
-  }
-}
-
-template <int dim>
-std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
-                                        std::span<const Tensor<dim>> stress)
-{
-  const mesh::Mesh<dim>& mesh = their_space.mesh();
-  std::vector<Point<dim>> forces(mesh.boundary_names().size(), Point<dim>::Zero());
-  for_each_traction<dim>(their_space, stress,
-                         [&](std::size_t f, double weight, const Point<dim>& traction, const Point<dim>&)
-                         {
-                           if (mesh.boundary()[f].tag >= 0)
-                             forces[mesh.boundary()[f].tag] += weight * traction;
-                         });
-  return forces;
-}
-
-template <int dim>
-Tension tension(const fem::LagrangeSpace<dim>& their_space, std::span<const Tensor<dim>> stress,
-                std::span<const std::size_t> facets)
-{
-  Tension result;
-  std::optional<std::size_t> last;
-  for_each_traction<dim>(their_space, stress,
-                         [&](std::size_t f, double, const Point<dim>& traction, const Point<dim>& normal)
-                         {
-                           if (!std::ranges::binary_search(facets, f) || traction.dot(normal) <= 0) return;
-                           result.largest = std::max(result.largest, traction.dot(normal));
-                           if (last != f) ++result.n_facets;
-                           last = f;
-                         });
-  return result;
-}
-
-template std::vector<Point<2>> boundary_forces(const fem::LagrangeSpace<2>&, std::span<const Tensor<2>>);
-template std::vector<Point<3>> boundary_forces(const fem::LagrangeSpace<3>&, std::span<const Tensor<3>>);
-template Tension tension(const fem::LagrangeSpace<2>&, std::span<const Tensor<2>>,
-                         std::span<const std::size_t>);
-template Tension tension(const fem::LagrangeSpace<3>&, std::span<const Tensor<3>>,
-                         std::span<const std::size_t>);
 template Judgement judge(const problem::Problem<2>&, const fem::LagrangeSpace<2>&, const ForeignSolution<2>&,
                          const fem::LagrangeSpace<2>&, std::span<const double>, double);
 template Judgement judge(const problem::Problem<3>&, const fem::LagrangeSpace<3>&, const ForeignSolution<3>&,

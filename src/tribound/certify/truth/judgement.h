@@ -25,9 +25,11 @@ struct ErrorInterval
 };
 
 /// max(0, d - B) <= ||u - v|| <= d + B for ||u - u_h|| <= B and d = ||v - u_h||, over the whole or any part.
-[[nodiscard]] ErrorInterval error_interval(double distance, double bound);
+/// d, whose square is exact up to the part `doubt`, is that `distance`.
+[[nodiscard]] ErrorInterval error_interval(double distance, double bound, double doubt = 0);
 /// The same over ||u||, which lies in ||u_h|| -+ B: [lower / (||u_h|| + B), upper / (||u_h|| - B)].
-[[nodiscard]] ErrorInterval relative_interval(const ErrorInterval& error, double norm, double bound);
+[[nodiscard]] ErrorInterval relative_interval(const ErrorInterval& error, double norm, double bound,
+                                              double doubt = 0);
 
 /// The error on a part of the body.
 struct JudgedRegion
@@ -58,7 +60,8 @@ struct JudgedField
   std::vector<Index> halving{};  ///< the fewest cells without which at most half of d is left
 };
 
-/// The rigid motion nearest to v - u_h at the vertices: rotations about the centroid of the body.
+/// The rigid motion nearest to v - u_h at the vertices: rotations about the centroid of the body. Of an
+/// axisymmetric body along the axis.
 struct RigidDifference
 {
   int body = 0;
@@ -78,27 +81,11 @@ struct Judgement
 };
 
 /// Judges u_h of `space`, whose mesh comes from `mesh` by bisect(), against v on `mesh`. `bound`: of u_h in
-/// the energy norm. The statements hold for what u_h's bound holds for.
+/// the energy norm. The statements hold for what u_h's bound holds for. Norms of an axisymmetric problem are
+/// those of one radian in `bound`, and of the full circle in the result.
 template <int dim>
 [[nodiscard]] Judgement judge(const problem::Problem<dim>& problem,
                               const fem::LagrangeSpace<dim>& their_space, const ForeignSolution<dim>& theirs,
                               const fem::LagrangeSpace<dim>& space, std::span<const double> u, double bound);
-
-/// Where their stress pulls at a contact, which cannot be.
-struct Tension
-{
-  double largest = 0;
-  std::size_t n_facets = 0;
-};
-
-/// At points of the given boundary facets of the mesh, whose numbers ascend.
-template <int dim>
-[[nodiscard]] Tension tension(const fem::LagrangeSpace<dim>& their_space, std::span<const Tensor<dim>> stress,
-                              std::span<const std::size_t> facets);
-
-/// Per boundary of the mesh: the integral of s n, the force on the body there that their stress stands for.
-template <int dim>
-[[nodiscard]] std::vector<Point<dim>> boundary_forces(const fem::LagrangeSpace<dim>& their_space,
-                                                      std::span<const Tensor<dim>> stress);
 
 }  // namespace tribound::certify

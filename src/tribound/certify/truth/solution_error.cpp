@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tribound/certify/truth/meridian_error.h"
 #include "tribound/contact/nitsche/elasticity.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/nested.h"
@@ -93,24 +94,14 @@ double take_roots(std::vector<double>& squares)
   return std::sqrt(sum);
 }
 
-}  // namespace
-
+/// Squares in place of roots, of the cells of this rank.
 template <int dim>
-std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& reference)
+LocalError squares_of(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                      std::span<const double> u, const fem::LagrangeSpace<dim>& reference_space,
+                      std::span<const double> u_ref)
 {
-  if (!reference.partition()) return mesh::overlay(mesh, reference);
-  std::vector<mesh::CellPair> pairs;
-  pairs.reserve(reference.n_owned_cells());
-  for (Index c = 0; c < reference.n_owned_cells(); ++c)
-    pairs.push_back({static_cast<Index>(reference.partition()->names[c].root), c});
-  return pairs;
-}
-
-template <int dim>
-LocalError solution_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                          std::span<const double> u, const fem::LagrangeSpace<dim>& reference_space,
-                          std::span<const double> u_ref)
-{
+  if constexpr (dim == 2)
+    if (problem.is_axisymmetric()) return meridian_squares(problem, space, u, reference_space, u_ref);
   const fem::Quadrature<dim> rule =
       fem::quadrature<dim>(2 * std::max(space.degree(), reference_space.degree()) - 2);
   CellGradients<dim> gradients(space, u, rule);
@@ -140,28 +131,23 @@ LocalError solution_error(const problem::Problem<dim>& problem, const fem::Lagra
               weight * contact::sigma<dim>(material, expected[q]).cwiseProduct(expected[q]).sum();
         }
       });
-  const Ranks& ranks = reference_space.mesh().ranks();
-  ranks.sum(error.energy);
-  ranks.sum(error.stress);
-  for (double* number : {&error.own_energy, &error.product, &error.reference_energy})
-    *number = ranks.sum(*number);
-  error.global.energy = take_roots(error.energy);
-  error.global.stress = take_roots(error.stress);
   return error;
 }
 
 template <int dim>
-std::vector<double> stress_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
-                                 std::span<const Tensor<dim>> s,
-                                 const fem::LagrangeSpace<dim>& reference_space,
-                                 std::span<const double> u_ref)
+StressError stress_squares(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                           std::span<const Tensor<dim>> s, std::span<const double> hoop,
+                           const fem::LagrangeSpace<dim>& reference_space, std::span<const double> u_ref)
 {
+  if constexpr (dim == 2)
+    if (problem.is_axisymmetric())
+      return meridian_stress_squares(problem, space, s, hoop, reference_space, u_ref);
   const bool has_initial = std::ranges::any_of(
       problem.regions(), [](const problem::Region<dim>& region) { return region.has_initial_stress(); });
   const int degree = std::max(space.degree(), reference_space.degree());
   const fem::Quadrature<dim> rule = fem::quadrature<dim>(has_initial ? 2 * degree + 5 : 2 * degree);
   CellGradients<dim> reference_gradients(reference_space, u_ref, rule);
-  std::vector<double> error(space.mesh().n_cells(), 0.0);
+  StressError error{.cells = std::vector<double>(space.mesh().n_cells(), 0.0)};
   const auto n_nodes = static_cast<std::size_t>(space.basis().n_nodes());
   std::vector<Point<dim>> in_cell(rule.size());
   for_each_overlap<dim>(
@@ -185,12 +171,53 @@ std::vector<double> stress_error(const problem::Problem<dim>& problem, const fem
           // C^-1 s = (s - lambda / (2 mu + d lambda) tr s I) / (2 mu)
           const double trace = difference.trace();
           const double share = material.lambda / (2 * material.mu + dim * material.lambda);
-          error[at.cell] += rule.weights[q] * at.smaller.det *
-                            (difference.squaredNorm() - share * trace * trace) / (2 * material.mu);
+          error.cells[at.cell] += rule.weights[q] * at.smaller.det *
+                                  (difference.squaredNorm() - share * trace * trace) / (2 * material.mu);
         }
       });
-  reference_space.mesh().ranks().sum(error);
-  (void)take_roots(error);
+  return error;
+}
+
+}  // namespace
+
+template <int dim>
+std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh, const mesh::Mesh<dim>& reference)
+{
+  if (!reference.partition()) return mesh::overlay(mesh, reference);
+  std::vector<mesh::CellPair> pairs;
+  pairs.reserve(reference.n_owned_cells());
+  for (Index c = 0; c < reference.n_owned_cells(); ++c)
+    pairs.push_back({static_cast<Index>(reference.partition()->names[c].root), c});
+  return pairs;
+}
+
+template <int dim>
+LocalError solution_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                          std::span<const double> u, const fem::LagrangeSpace<dim>& reference_space,
+                          std::span<const double> u_ref)
+{
+  LocalError error = squares_of<dim>(problem, space, u, reference_space, u_ref);
+  const Ranks& ranks = reference_space.mesh().ranks();
+  ranks.sum(error.energy);
+  ranks.sum(error.stress);
+  for (double* number : {&error.own_energy, &error.product, &error.reference_energy})
+    *number = ranks.sum(*number);
+  error.doubt = ranks.max(error.doubt);
+  error.global.energy = take_roots(error.energy);
+  error.global.stress = take_roots(error.stress);
+  return error;
+}
+
+template <int dim>
+StressError stress_error(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                         std::span<const Tensor<dim>> s, std::span<const double> hoop,
+                         const fem::LagrangeSpace<dim>& reference_space, std::span<const double> u_ref)
+{
+  StressError error = stress_squares<dim>(problem, space, s, hoop, reference_space, u_ref);
+  const Ranks& ranks = reference_space.mesh().ranks();
+  ranks.sum(error.cells);
+  error.doubt = ranks.max(error.doubt);
+  (void)take_roots(error.cells);
   return error;
 }
 
@@ -203,11 +230,11 @@ template LocalError solution_error(const problem::Problem<3>&, const fem::Lagran
                                    std::span<const double>, const fem::LagrangeSpace<3>&,
                                    std::span<const double>);
 
-template std::vector<double> stress_error(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
-                                          std::span<const Tensor<2>>, const fem::LagrangeSpace<2>&,
-                                          std::span<const double>);
-template std::vector<double> stress_error(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
-                                          std::span<const Tensor<3>>, const fem::LagrangeSpace<3>&,
-                                          std::span<const double>);
+template StressError stress_error(const problem::Problem<2>&, const fem::LagrangeSpace<2>&,
+                                  std::span<const Tensor<2>>, std::span<const double>,
+                                  const fem::LagrangeSpace<2>&, std::span<const double>);
+template StressError stress_error(const problem::Problem<3>&, const fem::LagrangeSpace<3>&,
+                                  std::span<const Tensor<3>>, std::span<const double>,
+                                  const fem::LagrangeSpace<3>&, std::span<const double>);
 
 }  // namespace tribound::certify

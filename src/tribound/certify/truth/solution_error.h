@@ -24,6 +24,15 @@ struct LocalError
   double own_energy = 0;        ///< a(u, u)
   double product = 0;           ///< a(u, u_ref)
   double reference_energy = 0;  ///< a(u_ref, u_ref)
+  /// Squares and energies are exact up to this part of themselves: 0 but for integrals over 1/r.
+  double doubt = 0;
+};
+
+/// ||s - sigma(u_ref)||_{C^-1,T} of each cell, and the part of itself up to which its square is exact.
+struct StressError
+{
+  std::vector<double> cells{};
+  double doubt = 0;
 };
 
 /// mesh::overlay(). Where `reference` is shared out: its own cells, each with the cell of the first mesh,
@@ -32,7 +41,8 @@ template <int dim>
 [[nodiscard]] std::vector<mesh::CellPair> cell_pairs(const mesh::Mesh<dim>& mesh,
                                                      const mesh::Mesh<dim>& reference);
 
-/// Integrated exactly over the common refinement of the two meshes, which bisect() makes from one mesh.
+/// Integrated exactly over the common refinement of the two meshes, which bisect() makes from one mesh. Of an
+/// axisymmetric problem with the weight r and the hoop strain; u_r vanishes on the axis.
 /// Either degree may be the higher one. The mesh of the reference may be shared out between ranks: the other
 /// one is then the first mesh, whole on each of them, as is the result. Throws std::invalid_argument for
 /// other meshes.
@@ -44,12 +54,13 @@ template <int dim>
 
 /// Per cell of `space`: ||s - sigma(u_ref)||_{C^-1,T}, with the initial stress in sigma; s is in P^p on each
 /// cell, with the values [cell n_nodes + node] at the nodes of `space`. Integrated as above; an initial
-/// stress as by a rule of degree 2p + 5.
+/// stress as by a rule of degree 2p + 5. Of an axisymmetric problem `hoop` is the stress around the axis, by
+/// its values as those of s.
 template <int dim>
-[[nodiscard]] std::vector<double> stress_error(const problem::Problem<dim>& problem,
-                                               const fem::LagrangeSpace<dim>& space,
-                                               std::span<const Tensor<dim>> s,
-                                               const fem::LagrangeSpace<dim>& reference_space,
-                                               std::span<const double> u_ref);
+[[nodiscard]] StressError stress_error(const problem::Problem<dim>& problem,
+                                       const fem::LagrangeSpace<dim>& space, std::span<const Tensor<dim>> s,
+                                       std::span<const double> hoop,
+                                       const fem::LagrangeSpace<dim>& reference_space,
+                                       std::span<const double> u_ref);
 
 }  // namespace tribound::certify

@@ -159,6 +159,7 @@ void CsvReader::choose_stress_columns()
     if (s_[i] < 0 && (x_[2] >= 0 || components[i].find('z') == std::string_view::npos))
       missing.push_back(name);
   }
+  solution_.stress_has_zz = s_[2] >= 0;
   if ((has_stress_ || needs_stress_) && !missing.empty())
     lines_.fail(fmt::format("the stress has no column {}: the file has {}", fmt::join(missing, ", "),
                             fmt::join(names_, ", ")),

@@ -182,7 +182,7 @@ void GmshSolution::read_stress(const gmsh::View& view, const FieldName& field, i
   solution_.stress_of_elements = data.kind != "NodeData";
   const std::vector<double> values =
       solution_.stress_of_elements ? of_elements(data, field) : of_nodes(data, field);
-  solution_.stress = stresses_of(values, field, where, solution_.notes);
+  set_stress(values, field, where, solution_);
   if (data.kind == "ElementData")
     solution_.notes.push_back(
         fmt::format("{}: the stress \"{}\" is constant in each element", where.file, field.name));

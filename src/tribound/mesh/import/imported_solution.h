@@ -30,6 +30,7 @@ struct ImportedSolution
   std::vector<std::array<double, 6>> stress{};  ///< xx yy zz xy yz xz; NaN in all where there is none
   /// The stress has one entry per entry of the nodes of all blocks of mesh.cells, in order; else per node.
   bool stress_of_elements = false;
+  bool stress_has_zz = true;          ///< else it is 0, since the file has none
   std::string description{};          ///< "CalculiX results, step 2 (t = 1), C3D10"
   std::vector<SolutionStep> steps{};  ///< all that the file has, as it has them; none where files have one
   std::vector<std::string> notes{};   ///< what was left out or chosen, "theirs.vtu: ..."

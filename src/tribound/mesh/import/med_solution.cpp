@@ -149,7 +149,7 @@ ImportedSolution MedFields::read() const
   const FieldName& its = fields_[*stress];
   if (const auto time_of_stress = time_of(its, step))
   {
-    solution.stress = stresses_of(values_of(its, *time_of_stress), its, where_, solution.notes);
+    set_stress(values_of(its, *time_of_stress), its, where_, solution);
     solution.description += fmt::format(", stress \"{}\"", its.name);
   }
   else if (!choice_.stress.empty())

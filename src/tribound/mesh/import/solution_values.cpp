@@ -199,32 +199,32 @@ std::vector<Point<3>> displacements_of(std::span<const double> values, const Fie
   return result;
 }
 
-std::vector<StressValues> stresses_of(std::span<const double> values, const FieldName& field,
-                                      const Where& where, std::vector<std::string>& notes)
+void set_stress(std::span<const double> values, const FieldName& field, const Where& where,
+                ImportedSolution& solution)
 {
   const std::size_t n = field.n_components;
   const std::vector<std::size_t> places = places_by_name(field);
   const bool is_plane_tensor = n == 4 && places.empty() && are_plane_tensors(values);
   double asymmetry = 0;
   double size = 0;
-  std::vector<StressValues> result;
-  result.reserve(values.size() / n);
+  solution.stress_has_zz = places.empty() ? n > 3 && !is_plane_tensor : std::ranges::count(places, 2) > 0;
+  solution.stress.clear();
+  solution.stress.reserve(values.size() / n);
   for (std::size_t i = 0; i + n <= values.size(); i += n)
   {
     const std::span<const double> s = values.subspan(i, n);
-    result.push_back(finite_stress(n == 9            ? from_tensor(s, asymmetry, size)
-                                   : is_plane_tensor ? StressValues{s[0], s[3], 0, s[1], 0, 0}
-                                                     : from_components(s, places)));
+    solution.stress.push_back(finite_stress(n == 9            ? from_tensor(s, asymmetry, size)
+                                            : is_plane_tensor ? StressValues{s[0], s[3], 0, s[1], 0, 0}
+                                                              : from_components(s, places)));
   }
   constexpr double round_off = 1e-5;  // of numbers in single precision
   if (asymmetry > round_off * size)
-    notes.push_back(
+    solution.notes.push_back(
         fmt::format("{}: the stress \"{}\" is not symmetric, by up to {:.3g}: its symmetric part is taken",
                     where.file, field.name, asymmetry));
   if (n == 4 && places.empty())
-    notes.push_back(fmt::format("{}: the 4 components of \"{}\" are taken as {}", where.file, field.name,
-                                is_plane_tensor ? "xx, xy, yx, yy" : "xx, yy, zz, xy"));
-  return result;
+    solution.notes.push_back(fmt::format("{}: the 4 components of \"{}\" are taken as {}", where.file,
+                                         field.name, is_plane_tensor ? "xx, xy, yx, yy" : "xx, yy, zz, xy"));
 }
 
 std::string element_words(const ImportedMesh& mesh)

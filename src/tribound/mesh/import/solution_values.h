@@ -46,10 +46,10 @@ struct FieldName
 /// them.
 [[nodiscard]] std::vector<Point<3>> displacements_of(std::span<const double> values, const FieldName& field);
 
-/// Stresses of 3, 4, 6 or 9 components each, in the orders of imported_solution.h. What is not evident goes
-/// to `notes`.
-[[nodiscard]] std::vector<StressValues> stresses_of(std::span<const double> values, const FieldName& field,
-                                                    const Where& where, std::vector<std::string>& notes);
+/// Sets the stress of `solution` to these values of 3, 4, 6 or 9 components each, in the orders of
+/// imported_solution.h. What is not evident goes to its notes.
+void set_stress(std::span<const double> values, const FieldName& field, const Where& where,
+                ImportedSolution& solution);
 
 /// "tetrahedra of ..." of all blocks: "tetrahedron of 10 nodes, prism of 15 nodes".
 [[nodiscard]] std::string element_words(const ImportedMesh& mesh);

@@ -67,8 +67,8 @@ ImportedSolution read_vtk_solution(const std::filesystem::path& path, const Solu
   solution.description = fmt::format("VTK's point array \"{}\"", field.name);
   if (const auto stress = choose_stress(fields, choice.stress, where, "point arrays"))
   {
-    solution.stress = stresses_of(values_at(file, fields[*stress], solution.mesh.node_numbers),
-                                  fields[*stress], where, solution.notes);
+    set_stress(values_at(file, fields[*stress], solution.mesh.node_numbers), fields[*stress], where,
+               solution);
     solution.description += fmt::format(", stress \"{}\"", fields[*stress].name);
   }
   solution.description += ", " + element_words(solution.mesh);

@@ -1,0 +1,248 @@
+"""Judgements of bodies of revolution against errors by true_errors.py, code that shares nothing with them."""
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tribound as tb
+from numpy.typing import NDArray
+
+from test_judge import averaged_stress, fields, random_half
+from true_errors import Squares, squared_errors
+
+Floats = NDArray[np.float64]
+CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
+PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
+
+
+def body(inner: float, **more: Any) -> dict[str, Any]:
+    """A cylinder, hollow where `inner` is not 0, is pressed on a rigid floor."""
+    left: dict[str, Any] = {"pressure": 0.05} if inner else {"displacement": [0, "free"]}
+    return {
+        "model": "axisymmetric",
+        "degree": 2,
+        "mesh": {"box": {"lower": [inner, 0], "upper": [inner + 1, 1], "cells": [4, 4]}},
+        "material": {"E": 1.0, "nu": 0.3},
+        "boundary": {
+            "left": left,
+            "right": {"traction": [0, 0]},
+            "top": {"pressure": "0.05*(1 + x)"},
+            "bottom": {"contact": {"friction": "none", "gap": 0}},
+        },
+        "adapt": {"max_dofs": 6000},
+        **more,
+    }
+
+
+def random_case(random: np.random.Generator) -> dict[str, Any]:
+    case = body(float(random.choice([0, 0, 0.05, 1, 20])), quantity=[{"name": "energy", "kind": "energy"}])
+    box = case["mesh"]["box"]
+    box["cells"] = [int(n) for n in random.integers(1, 5, 2)]
+    law = str(random.choice(["none", "tresca"]))
+    contact = case["boundary"]["bottom"]["contact"]
+    contact.update({"friction": law, "gap": float(random.choice([0, 0.01]))})
+    if law == "tresca":
+        contact["threshold"] = float(random.uniform(0.01, 0.1))
+    pull, push = (float(random.uniform(-0.1, upper)) for upper in (0.1, 0))
+    case["boundary"]["right"] = {"traction": [pull, push]}
+    if random.random() < 0.5:
+        case["boundary"]["top"] = {"displacement": ["free", -0.03]}
+    case["material"]["nu"] = nu = float(random.choice([0.0, 0.3, 0.45]))
+    E = float(random.uniform(0.5, 2))
+    case["material"]["inner"] = {"E": E, "nu": nu, "where": random_half(random, box)}
+    case["adapt"] = {"max_dofs": 3000, "max_levels": 12}
+    return case
+
+
+class Guarantee(unittest.TestCase):
+    def test_the_error_lies_in_the_interval(self) -> None:
+        """Of displacements and stresses that are moved at random, on the body and on each region."""
+        judged = 0
+        for seed in range(CASES):
+            random = np.random.default_rng(seed)
+            case = random_case(random)
+            degree = int(random.integers(1, 4))
+            theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": degree}).level
+            size = float(random.choice([0, 1e-3, 1e-1])) * np.abs(theirs.displacement).max()
+            moved = theirs.displacement + size * random.uniform(-1, 1, theirs.displacement.shape)
+            moved[theirs.nodes[:, 0] == 0, 0] = 0
+            stress = averaged_stress(theirs)
+            solution = (theirs.nodes, moved, stress)
+            wide = tb.judge(case, solution, set={"judge.sharpness": 1e6})
+            narrow = tb.judge(case, solution, set={"judge.sharpness": 0.02, "degree": 3})
+            with self.subTest(seed=seed, degree=degree, case=case):
+                finest = tb.run(case, set={"degree": 3, "adapt.measure": "energy", "adapt.tolerance": 1e-5,
+                                           "adapt.max_dofs": 10000})
+                own = finest.certificate["energy_error"]["bound"]  # of the finer solution itself
+                of_region = [case["material"].get(name, case["material"]) for name in theirs.mesh.regions]
+                E, nu = (np.array([m[key] for m in of_region])[theirs.mesh.region_of] for key in ("E", "nu"))
+                their_fields = replace(fields(theirs, stress), displacement=moved[theirs.cell_nodes])
+                true = squared_errors(their_fields, fields(finest.level), E, nu, of_revolution=True)
+                for judgement in (wide, narrow):
+                    self.assertNotEqual(judgement.status, "no bound", judgement["reason"])
+                    self.check(judgement, true, theirs, own)
+                (energy,) = narrow["quantities"]
+                self.assertIsNotNone(energy["theirs"])
+                judged += 1
+        self.assertEqual(judged, CASES)
+
+    def check(self, judgement: tb.Judgement, true: Squares, theirs: tb.Level, own: float) -> None:
+        for field in ("displacement", "stress"):
+            squares, record = getattr(true, field), judgement[field]
+            self.assert_between(record["error"], squares, own)
+            self.assertEqual({region["name"] for region in record["regions"]}, {"box", "inner"})
+            for region in record["regions"]:
+                self.assert_between(region["error"], squares[theirs.mesh.regions[region["name"]]], own)
+
+    def assert_between(self, interval: Sequence[float], squares: Floats, own: float) -> None:
+        """own: the error of the finer solution that the squares were computed with."""
+        error = float(np.sqrt(squares.sum()))
+        self.assertLessEqual(interval[0] - own, error)
+        self.assertLessEqual(error, interval[1] + own)
+
+
+class Distances(unittest.TestCase):
+    def test_our_own_solution(self) -> None:
+        """On the coarse mesh of the case the distance is 0, and the interval holds."""
+        for inner in (0.0, 1.0):
+            case = body(inner)
+            once = {"adapt.max_levels": 0}
+            level = tb.run(case, set=once).level
+            judged = tb.judge(case, (level.nodes, level.displacement), set=once)
+            self.assertLess(judged["displacement"]["distance"], 1e-9 * judged["energy_norm"])
+            lower, upper = judged["displacement"]["error"]
+            self.assertEqual(lower, 0)
+            self.assertAlmostEqual(upper / judged["displacement"]["bound"], 1, places=6)
+
+    def test_nothing_is_wrong_by_the_energy_norm(self) -> None:
+        case = body(0.0, quantity=[{"name": "energy", "kind": "energy"}])
+        once = {"adapt.max_levels": 0}
+        run = tb.run(case, set=once)
+        judged = tb.judge(case, (run.level.nodes, 0 * run.level.displacement), set=once)
+        self.assertAlmostEqual(judged["displacement"]["distance"] / judged["energy_norm"], 1, places=12)
+        ours = fields(run.level)
+        nothing = replace(ours, displacement=0 * ours.displacement)
+        square = squared_errors(nothing, ours, 1.0, 0.3, of_revolution=True).displacement.sum()
+        self.assertAlmostEqual(judged["energy_norm"] ** 2 / square, 1, places=9)
+        (energy,) = tb.judge(case, (run.level.nodes, run.level.displacement), set=once)["quantities"]
+        self.assertAlmostEqual(energy["theirs"] / square, 1, places=9)
+        assert judged.relative
+        self.assertLessEqual(judged.relative[0], 1)
+        self.assertGreaterEqual(judged.relative[1], 1)
+
+    def test_distance_is_that_of_an_independent_quadrature(self) -> None:
+        for inner, degree in ((0.0, 1), (0.0, 2), (0.05, 3), (10.0, 2)):
+            case = body(inner, adapt={"max_levels": 3})
+            theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": degree}).level
+            stress = averaged_stress(theirs)
+            with tempfile.TemporaryDirectory() as directory:
+                judged = tb.judge(case, (theirs.nodes, theirs.displacement, stress),
+                                  set={"judge.sharpness": 1e-9}, directory=directory)
+                ours = tb.run(tb.Case.read(Path(directory) / "judge/case.toml"), set={
+                    "adapt.measure": "energy", "certify.energy": "every", "adapt.tolerance": 1e-12,
+                }).level
+            self.assertEqual(judged["cells"], len(ours.eta))
+            expected = squared_errors(fields(theirs, stress), fields(ours), 1.0, 0.3, of_revolution=True)
+            for field in ("displacement", "stress"):
+                distance = np.sqrt(getattr(expected, field).sum())
+                self.assertAlmostEqual(judged[field]["distance"] / distance, 1, places=6)
+
+
+class Use(unittest.TestCase):
+    def setUp(self) -> None:
+        self.case = body(0.0)
+        self.level = tb.run(self.case, set={"adapt.max_levels": 0, "degree": 1}).level
+
+    def test_forces_are_axial(self) -> None:
+        """A stress that is constant, sigma_zz = 3: its forces are those on a disc."""
+        stress = np.tile([2.0, 3.0, 2.0, 0, 0, 0], (len(self.level.nodes), 1))
+        judged = tb.judge(self.case, (self.level.nodes, self.level.displacement, stress))
+        forces = {force["boundary"]: force["theirs"] for force in judged["forces"]}
+        np.testing.assert_allclose(forces["top"], [0, 3 * np.pi], rtol=1e-12)
+        np.testing.assert_allclose(forces["bottom"], [0, -3 * np.pi], rtol=1e-12)
+        np.testing.assert_allclose(forces["right"], [0, 0], atol=1e-12)
+        ours = {force["boundary"]: force["ours"] for force in judged["forces"]}
+        np.testing.assert_allclose(ours["top"], [0, -0.05 * 2 * np.pi * (1 / 2 + 1 / 3)], rtol=1e-9)
+        self.assertEqual(judged["model"], "axisymmetric")
+
+    def test_thresholds(self) -> None:
+        solution = (self.level.nodes, self.level.displacement)
+        self.assertEqual(tb.judge(self.case, solution, accept=0.9).status, "accepted")
+        self.assertEqual(tb.judge(self.case, solution, accept=1e-3).status, "rejected")
+
+    def test_other_meshes_and_files(self) -> None:
+        """The stress of a .vtu has its hoop part; on another mesh both are interpolated."""
+        other = body(0.0, mesh={"box": {"lower": [0, 0], "upper": [1, 1], "cells": [6, 5]}})
+        with tempfile.TemporaryDirectory() as directory:
+            file = tb.run(other, set={"adapt.max_levels": 0}, directory=directory).directory / "level_000.vtu"
+            with self.assertRaisesRegex(tb.InputError, "--interpolate"):
+                tb.judge(self.case, file)
+            judged = tb.judge(self.case, file, interpolate=True)
+            whole = tb.judge(other, file)
+        for judgement in (judged, whole):
+            assert judgement.relative and judgement.stress
+            self.assertLess(judgement.relative[1], 0.1)
+            self.assertLess(judgement.stress[1], 0.1)
+
+    def test_load_steps(self) -> None:
+        """Of a path each step is judged; half of the load has half of the error without contact that opens."""
+        case = body(0.5, history={"steps": [0.5, 1.0]}, adapt={"tolerance": 0.05})
+        case["boundary"]["top"] = {"pressure": "0.1*t"}
+        case["boundary"]["left"] = {"pressure": "0.05*t"}
+        with tempfile.TemporaryDirectory() as directory:
+            theirs = tb.run(case, set={"adapt.max_levels": 0, "degree": 1}, directory=directory)
+            judged = tb.judge(case, theirs.directory / "series.pvd", steps=True)
+        half, full = judged.steps
+        assert half.error and full.error
+        self.assertLess(half.error[0], full.error[1] / 2)
+        self.assertGreater(half.error[1], full.error[0] / 2)
+
+    def test_rigid_motions_along_the_axis(self) -> None:
+        moved = self.level.displacement + [0, 0.25]
+        judged, other = (tb.judge(self.case, (self.level.nodes, u)) for u in (moved, self.level.displacement))
+        ((motion,), (usual,)) = judged["rigid_difference"], other["rigid_difference"]
+        self.assertAlmostEqual(motion["translation"][1] - usual["translation"][1], 0.25, places=9)
+        self.assertEqual((motion["translation"][0], motion["rotation"]), (0, [0]))
+        np.testing.assert_allclose(judged["displacement"]["error"], other["displacement"]["error"], rtol=1e-9)
+
+    def test_what_is_refused(self) -> None:
+        moved = self.level.displacement + [0.1, 0]
+        with self.assertRaisesRegex(tb.InputError, "of the axis by"):
+            tb.judge(self.case, (self.level.nodes, moved))
+        stress = averaged_stress(self.level)[:, [0, 1, 3]]
+        with self.assertRaisesRegex(tb.InputError, "without zz"):
+            tb.judge(self.case, (self.level.nodes, self.level.displacement, stress))
+
+    @unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "no program, or no mpirun")
+    def test_processes(self) -> None:
+        """Two processes find what one does."""
+        found = []
+        with tempfile.TemporaryDirectory() as directory:
+            folder = Path(directory)
+            tb.judge(self.case, (self.level.nodes, self.level.displacement, averaged_stress(self.level)),
+                     directory=folder)
+            command = [str(PROGRAM), "judge", "judge/case.toml", "--solution", "solution.csv", "-q"]
+            for ranks in (1, 2):
+                out = folder / f"on_{ranks}"
+                start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+                ended = subprocess.run([*start, *command, "--set", f'output.directory="{out}"'], cwd=folder,
+                                       env=dict(os.environ), capture_output=True, text=True)
+                self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+                found.append(json.loads((out / "judge/judgement.json").read_text()))
+        one, two = found
+        self.assertEqual(one["cells"], two["cells"])
+        for field in ("displacement", "stress"):
+            np.testing.assert_allclose(two[field]["error"], one[field]["error"], rtol=1e-6)
+            np.testing.assert_allclose(two[field]["distance"], one[field]["distance"], rtol=1e-8)
+
+
+if __name__ == "__main__":
+    unittest.main()
