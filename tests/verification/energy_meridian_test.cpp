@@ -209,7 +209,7 @@ TEST(EnergyMeridian, IsABoundOfTwoBodies)
     const certify::EnergyBound eta = bound_of(c, u);
     const double found = expect_bound(reference, u, eta, fmt::format("rings {}", seed));
     EXPECT_EQ(eta.transfer > 0, seed % 3 == 2);
-    EXPECT_LE(found, 4) << seed;
+    EXPECT_LE(found, 5) << seed;
     fmt::print("rings {}: p = {}: {:.3f}, of transfer {:.1e} of {:.1e}\n", seed, p, found, eta.transfer,
                eta.bound);
     std::fflush(stdout);
