@@ -7,18 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <numbers>
-#include <random>
-#include <string>
+#include <tuple>
 
-#include "support/random_cases.h"
 #include "support/random_meridian_problem.h"
 #include "tribound/certify/bound/balance.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
-#include "tribound/certify/truth/true_error.h"
+#include "verification/random_meridian_bound.h"
 
 namespace tribound::test
 {
@@ -187,38 +184,21 @@ TEST(AxisymmetricLoads, RigidPlateCarriesTheForceOfTheFullCircle)
 
 TEST(AxisymmetricLoads, BoundIsNotBelowTheDualNorm)
 {
-  for (unsigned seed = 0; seed < n_cases(12); ++seed)
-  {
-    std::mt19937 random(seed);
-    const double inner = seed % 2 == 0 ? 0 : 0.05 + 0.1 * (seed % 5);
-    const int p = 1 + static_cast<int>(seed / 2) % 3;
-    MeridianProblem c(random_meridian(inner, 2 + static_cast<int>(random() % 3), seed),
-                      random_meridian_problem(random, inner), {.degree = p, .newton = {.tolerance = 1e-11}});
-    certify::DualNorm<2> dual_norm(c.form, {.refinements = 2, .degree = std::min(p + 2, fem::max_degree)});
-    std::string line = fmt::format("seed {}: p = {}, inner = {}", seed, p, inner);
-    const int all_steps = c.method.newton.max_steps;
-    for (const int steps : {1, 2, all_steps})
-    {
-      c.method.newton.max_steps = steps;
-      const solve::NewtonResult<2> newton = c.solve();
-      const double below = dual_norm(newton.u);
-      const certify::Stress<2> stress = certify::equilibrate<2>(c.form, newton.u, newton.traction);
-      const certify::Estimate eta = certify::estimate<2>(c.form, newton.u, stress);
-      EXPECT_GE(eta.total_sharp, below) << line;
-      line += fmt::format("  k = {:<2} {:.4f}", newton.steps.size(), eta.total_sharp / below);
-      if (steps != all_steps) continue;
-      EXPECT_LE(
-          certify::check_identities<2>(c.form, newton.traction, stress,
-                                       certify::Estimator<2>(c.form).algebraic_remainder(newton.u, stress))
-              .largest(),
-          1e-11)
-          << line;
-      const certify::Balance balance =
-          certify::balance<2>(c.form, newton.u, newton.traction, Point<2>::Zero());
-      EXPECT_NEAR(balance.rows.back().force[1], 0, 1e-10) << line;
-    }
-    std::cout << line << std::endl;
-  }
+  expect_above_dual_norm_of_random(
+      random_meridian_problem,
+      [](const BoundedMeridian& found)
+      {
+        const contact::NitscheForm<2>& form = found.problem.form;
+        const auto& [u, traction] = std::tie(found.newton.u, found.newton.traction);
+        EXPECT_LE(
+            certify::check_identities<2>(form, traction, found.stress,
+                                         certify::Estimator<2>(form).algebraic_remainder(u, found.stress))
+                .largest(),
+            1e-11)
+            << found.name;
+        const certify::Balance balance = certify::balance<2>(form, u, traction, Point<2>::Zero());
+        EXPECT_NEAR(balance.rows.back().force[1], 0, 1e-10) << found.name;
+      });
 }
 
 }  // namespace

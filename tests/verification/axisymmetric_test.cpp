@@ -21,6 +21,7 @@
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/certify/truth/true_error.h"
 #include "tribound/fem/polynomials.h"
+#include "verification/random_meridian_bound.h"
 
 namespace tribound::test
 {
@@ -155,32 +156,13 @@ ProblemData<2> random_problem(std::mt19937& random, double inner)
 
 TEST(Axisymmetric, BoundIsNotBelowTheDualNorm)
 {
-  for (unsigned seed = 0; seed < n_cases(12); ++seed)
-  {
-    std::mt19937 random(seed);
-    const double inner = seed % 2 == 0 ? 0 : 0.05 + 0.1 * (seed % 5);
-    const int p = 1 + static_cast<int>(seed / 2) % 3;
-    MeridianProblem c(random_meridian(inner, 2 + static_cast<int>(random() % 3), seed),
-                      random_problem(random, inner), {.degree = p, .newton = {.tolerance = 1e-11}});
-    certify::DualNorm<2> dual_norm(c.form, {.refinements = 2, .degree = std::min(p + 2, fem::max_degree)});
-    std::string line = fmt::format("seed {}: p = {}, inner = {}", seed, p, inner);
-    const int all_steps = c.method.newton.max_steps;
-    for (const int steps : {1, 2, all_steps})
-    {
-      c.method.newton.max_steps = steps;
-      const solve::NewtonResult<2> newton = c.solve();
-      const double below = dual_norm(newton.u);
-      const certify::Estimate eta =
-          certify::estimate<2>(c.form, newton.u, certify::equilibrate<2>(c.form, newton.u, newton.traction));
-      EXPECT_GE(eta.total_sharp, below) << line;
-      if (steps == all_steps)  // beside it cnt and frc can be as large, where contact ends inside a facet
-      {
-        EXPECT_LE(eta.global.str, 1.2 * below) << line;
-      }
-      line += fmt::format("  k = {:<2} {:.4f}", newton.steps.size(), eta.total_sharp / below);
-    }
-    std::cout << line << std::endl;
-  }
+  expect_above_dual_norm_of_random(random_problem,
+                                   [](const BoundedMeridian& found)
+                                   {
+                                     // beside it cnt and frc can be as large, where contact ends inside a
+                                     // facet
+                                     EXPECT_LE(found.eta.global.str, 1.2 * found.below) << found.name;
+                                   });
 }
 
 /// The outer one of two rings is pressed onto the inner one.

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "support/bonded_path.h"
-#include "tribound/adapt/transfer.h"
 #include "verification/path_bound.h"
 
 namespace tribound::test
@@ -75,18 +74,7 @@ TEST(LoadPathBound, IsAboveTheDualNormAfterTransfer)
       adapt::Method method{.degree = 2};
       method.stopping.criterion = adapt::Stopping::last_bounded;
       adapt::LoadPath<2> path(problem, method, {.tolerance = 1e-3}, std::move(mesh));
-      for (const double t : {path_of_t[0], path_of_t[1]}) ASSERT_EQ(path.advance(t), "");
-      std::vector<double> before;
-      const auto check = [&](const adapt::LoadStep<2>& step)
-      {
-        if (before.empty()) before = step.start;
-        expect_above_dual_norm<2>(step, before, seen);
-        before = step.level.u;
-      };
-      const certify::Verdict verdict =
-          adapt::transfer<2>(path, {.targets = {path_of_t.begin() + 2, path_of_t.end()}},
-                             adapt::make_strategy<2>({.max_levels = 2}), {.step = check});
-      EXPECT_EQ(verdict.status, certify::RunStatus::budget);
+      expect_above_dual_norm_after_transfer<2>(path, seen);
     }
   fmt::print("2D, carried: {} iterates {:.3f} to {:.3f}\n", seen.count, seen.least, seen.most);
 }

@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <span>
+#include <vector>
 
+#include "support/bonded_path.h"
 #include "support/seen_range.h"
 #include "tribound/adapt/load_path.h"
+#include "tribound/adapt/transfer.h"
 #include "tribound/certify/bound/checks.h"
 #include "tribound/certify/bound/estimate.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
@@ -43,6 +46,24 @@ void expect_above_dual_norm(const adapt::LoadStep<dim>& step, std::span<const do
                             return false;
                           });
   check(step.level.u, step.level.traction);
+}
+
+/// On meshes to which the history is transferred in the middle of path_of_t.
+template <int dim>
+void expect_above_dual_norm_after_transfer(adapt::LoadPath<dim>& path, SeenRange& seen)
+{
+  for (const double t : {path_of_t[0], path_of_t[1]}) ASSERT_EQ(path.advance(t), "");
+  std::vector<double> before;
+  const auto check = [&](const adapt::LoadStep<dim>& step)
+  {
+    if (before.empty()) before = step.start;
+    expect_above_dual_norm<dim>(step, before, seen);
+    before = step.level.u;
+  };
+  const certify::Verdict verdict =
+      adapt::transfer<dim>(path, {.targets = {path_of_t.begin() + 2, path_of_t.end()}},
+                           adapt::make_strategy<dim>({.max_levels = 2}), {.step = check});
+  EXPECT_EQ(verdict.status, certify::RunStatus::budget);
 }
 
 }  // namespace tribound::test
