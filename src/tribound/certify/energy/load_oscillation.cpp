@@ -124,11 +124,6 @@ std::map<std::pair<Index, int>, double> turning_losses(const contact::NitscheFor
   return squares;
 }
 
-}  // namespace
-
-namespace
-{
-
 /// Of ||t - Pi t|| on a facet, in the bracket of O_T.
 template <int dim>
 double loss_factor(const contact::NitscheForm<dim>& form, Index cell, int facet)
