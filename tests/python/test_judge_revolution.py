@@ -6,19 +6,16 @@ import shutil
 import subprocess
 import tempfile
 import unittest
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tribound as tb
-from numpy.typing import NDArray
 
-from test_judge import averaged_stress, fields, random_half
-from true_errors import Squares, squared_errors
+from test_judge import AgainstTrueErrors, averaged_stress, fields, random_half
+from true_errors import squared_errors
 
-Floats = NDArray[np.float64]
 CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
 PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 
@@ -62,7 +59,7 @@ def random_case(random: np.random.Generator) -> dict[str, Any]:
     return case
 
 
-class Guarantee(unittest.TestCase):
+class Guarantee(AgainstTrueErrors):
     def test_the_error_lies_in_the_interval(self) -> None:
         """Of displacements and stresses that are moved at random, on the body and on each region."""
         judged = 0
@@ -88,25 +85,11 @@ class Guarantee(unittest.TestCase):
                 true = squared_errors(their_fields, fields(finest.level), E, nu, of_revolution=True)
                 for judgement in (wide, narrow):
                     self.assertNotEqual(judgement.status, "no bound", judgement["reason"])
-                    self.check(judgement, true, theirs, own)
+                    self.check_fields(judgement, true, theirs, own)
                 (energy,) = narrow["quantities"]
                 self.assertIsNotNone(energy["theirs"])
                 judged += 1
         self.assertEqual(judged, CASES)
-
-    def check(self, judgement: tb.Judgement, true: Squares, theirs: tb.Level, own: float) -> None:
-        for field in ("displacement", "stress"):
-            squares, record = getattr(true, field), judgement[field]
-            self.assert_between(record["error"], squares, own)
-            self.assertEqual({region["name"] for region in record["regions"]}, {"box", "inner"})
-            for region in record["regions"]:
-                self.assert_between(region["error"], squares[theirs.mesh.regions[region["name"]]], own)
-
-    def assert_between(self, interval: Sequence[float], squares: Floats, own: float) -> None:
-        """own: the error of the finer solution that the squares were computed with."""
-        error = float(np.sqrt(squares.sum()))
-        self.assertLessEqual(interval[0] - own, error)
-        self.assertLessEqual(error, interval[1] + own)
 
 
 class Distances(unittest.TestCase):
