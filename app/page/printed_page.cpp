@@ -12,6 +12,7 @@
 
 #include "app/child_process.h"
 #include "tribound/base/error.h"
+#include "tribound/base/temporary_directory.h"
 #include "tribound/io/file/atomic_file.h"
 
 namespace tribound::app
@@ -31,14 +32,11 @@ constexpr std::string_view title_of_unfinished = "/Title (Tribound report)";
 class Profile
 {
  public:
-  Profile()
-  {
-    std::string name = (std::filesystem::temp_directory_path(error_) / "tribound-XXXXXX").string();
-    if (!error_ && ::mkdtemp(name.data()) != nullptr) path_ = name;
-  }
+  Profile() : path_(make_temporary_directory()) {}
   ~Profile()
   {
-    if (!path_.empty()) std::filesystem::remove_all(path_, error_);
+    std::error_code none;
+    if (!path_.empty()) std::filesystem::remove_all(path_, none);
   }
   Profile(const Profile&) = delete;
   Profile& operator=(const Profile&) = delete;
@@ -48,7 +46,6 @@ class Profile
 
  private:
   std::filesystem::path path_;
-  std::error_code error_;
 };
 
 bool is_program(const std::filesystem::path& path)

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "tribound/algebra/petsc_detail.h"
+#include "tribound/base/temporary_directory.h"
 
 namespace tribound::algebra
 {
@@ -184,15 +185,6 @@ bool is_launched()
   return std::ranges::any_of(variables, [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-/// Makes a directory of our own; empty if that fails.
-std::filesystem::path make_directory()
-{
-  std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / "tribound-XXXXXX").string();
-  if (error || ::mkdtemp(name.data()) == nullptr) return {};
-  return name;
-}
-
 /// If alone, Open MPI puts its files into `directory`: in the common one a starting process may fail because
 /// an ending one removes it. It also starts no daemon and looks for no network, which takes longer than MPI
 /// itself and would only serve further processes. Child processes inherit none of these settings.
@@ -218,7 +210,7 @@ Libraries::Libraries()
   if (has_mpi == 0)
   {
     const bool alone = !is_launched();
-    if (alone) session_directory_ = make_directory();
+    if (alone) session_directory_ = make_temporary_directory();
     started_mpi_ = start_mpi(alone, session_directory_);
     if (!started_mpi_) throw SolveError("MPI does not start");
   }
