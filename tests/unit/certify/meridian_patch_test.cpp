@@ -84,7 +84,7 @@ void expect_minimisers(const MeridianProblem& c)
   const std::vector<double> u = any_displacement(c, 1);
   const std::vector<Point<2>> t = c.form.traction(u);
   const certify::MeridianCellSource source(c.form);
-  const certify::MeridianFacets facets(c.form, source.reference(), {t, {}, {}});
+  const certify::MeridianFacets facets(c.form, source.reference(), u, {t, {}, {}});
   for (Index v = 0; v < c.mesh.n_vertices(); ++v)
     for (int row = 0; row < 2; ++row)
     {
@@ -104,7 +104,7 @@ void expect_symmetric_minimisers(const MeridianProblem& c)
   for (double& k : turning) k = std::uniform_real_distribution<double>(-0.1, 0.1)(random);
   const problem::Material& material = c.problem.material(c.mesh.region(0));
   const certify::MeridianCellSource source(c.form, false, {{2 * material.mu, material.lambda}});
-  const certify::MeridianFacets facets(c.form, source.reference(), {t, {}, {}});
+  const certify::MeridianFacets facets(c.form, source.reference(), u, {t, {}, {}});
   for (Index v = 0; v < c.mesh.n_vertices(); ++v)
   {
     const DenseMeridianPatch dense(c, u, t, v, 0, 2, turning);

@@ -54,11 +54,11 @@ certify::AffineFields<2> remainder(const MeridianProblem& c, std::span<const dou
   return rho;
 }
 
-class MeridianStress : public OnMeridians
+class StressOfRevolution : public OnMeridians
 {
 };
 
-TEST_P(MeridianStress, BalancesTheSolution)
+TEST_P(StressOfRevolution, BalancesTheSolution)
 {
   const MeridianProblem c(skew_mesh(axis(), 4), pressed(false), {.degree = degree()});
   const auto newton = c.solve();
@@ -66,7 +66,7 @@ TEST_P(MeridianStress, BalancesTheSolution)
   EXPECT_LE(certify::check_identities<2>(c.form, newton.traction, stress).largest(), 1e-10);
 }
 
-TEST_P(MeridianStress, BalancesAnyDisplacement)
+TEST_P(StressOfRevolution, BalancesAnyDisplacement)
 {
   for (const bool held : {false, true})
   {
@@ -85,9 +85,9 @@ TEST_P(MeridianStress, BalancesAnyDisplacement)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Meshes, MeridianStress, meridians);
+INSTANTIATE_TEST_SUITE_P(Meshes, StressOfRevolution, meridians);
 
-TEST(MeridianStress, DoesNotDependOnTheNumberOfThreads)
+TEST(StressOfRevolution, DoesNotDependOnTheNumberOfThreads)
 {
   const MeridianProblem c(skew_mesh(Axis::edges, 8), pressed(true), {.degree = 2});
   const std::vector<double> u = any_displacement(c, 1);
@@ -102,7 +102,7 @@ TEST(MeridianStress, DoesNotDependOnTheNumberOfThreads)
   }
 }
 
-TEST(MeridianStress, HasTheLinearisationAlone)
+TEST(StressOfRevolution, HasTheLinearisationAlone)
 {
   const MeridianProblem c(skew_mesh(Axis::edges, 4), pressed(true), {.degree = 2});
   const std::vector<double> u = any_displacement(c, 1);
