@@ -28,7 +28,7 @@ bool is_same(double a, double b)
 std::string list_of(std::span<const double> times, std::size_t n, std::string_view one, std::string_view many)
 {
   constexpr std::size_t most = 8;
-  const std::string number = count(static_cast<long>(n), one, many);
+  std::string number = count(static_cast<long>(n), one, many);
   if (times.empty()) return number;
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < times.size(); ++i)

@@ -103,7 +103,8 @@ std::filesystem::path find_browser()
   {
     const std::size_t end = std::min(rest.find(':'), rest.size());
     for (const char* name : browser_names)
-      if (const auto path = std::filesystem::path(rest.substr(0, end)) / name; is_program(path)) return path;
+      if (std::filesystem::path path = std::filesystem::path(rest.substr(0, end)) / name; is_program(path))
+        return path;
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return {};

@@ -31,7 +31,7 @@ template <int dim>
 double least_stiffness(const contact::NitscheForm<dim>& form, Index cell)
 {
   const problem::Material& material = form.problem().material(form.space().mesh().region(cell));
-  const int n = form.problem().is_axisymmetric() ? 3 : dim;
+  const int n = std::max(dim, form.problem().is_axisymmetric() ? 3 : 2);
   return std::min(2 * material.mu, 2 * material.mu + n * material.lambda);
 }
 
