@@ -223,6 +223,14 @@ TEST(AxialConstant, IsAboveTheBestOneAmongPolynomials)
   EXPECT_NEAR(certify::axial_constant(half_square) / std::sqrt(2), 2.98, 0.02);
 }
 
+TEST(AxialConstant, DoesNotJumpWhereRadiiAreNearlyTheSame)
+{
+  const double same = certify::axial_constant({Point<2>(0, 0), Point<2>(1, 0), Point<2>(1, 1)});
+  for (const double by : {1e-14, 1e-9, 1e-3})
+    EXPECT_NEAR(certify::axial_constant({Point<2>(0, 0), Point<2>(1, 0), Point<2>(1 + by, 1)}) / same, 1,
+                0.03);
+}
+
 /// The bound of bodies whose loads have the given degree.
 certify::LoadOscillation oscillation(Axis axis, int p, const ProblemData<2>& data)
 {

@@ -33,9 +33,10 @@ double axial_constant(std::array<Point<2>, 3> x)
   const double steepest_2 = b2 > 0 ? std::max(std::abs(slope(0, 2)), std::abs(slope(1, 2))) : 0;
   const double r1 = x[1][0];
   const double r2 = x[2][0];
-  const double i = std::max(b1 * r1, b2 * b2) + b2 * r2 / 4;
+  const double far = (1 + r1 / r2) / 4;
+  const double i = std::max(b1 * r1, b2 * b2) + far * b2 * b2;
   const double j = std::max(steepest_1 * steepest_1 * b1 * r1, std::pow(steepest_2 * b2, 2)) +
-                   steepest_2 * steepest_2 * b2 * r2 / 4;
+                   far * std::pow(steepest_2 * b2, 2);
   const double hoop = 12 * std::pow(std::max(b1 * r1, b2 * r2) / section, 2);
   return std::sqrt(2.4 * i + std::pow(section / 2 + std::sqrt(1.2 * j), 2) + hoop);
 }
