@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tribound/fem/evaluation.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::doctor
 {
@@ -29,7 +30,7 @@ void measure_extent(const mesh::Mesh<dim>& mesh, LoadFacts& facts)
   facts.size = box.longest_edge();
 }
 
-/// The integral of f; sets the largest mean of |f| over a cell.
+/// The integral of f, of bodies of revolution that for one radian; sets the largest mean of |f| over a cell.
 template <int dim>
 Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
@@ -45,7 +46,7 @@ Point<dim> body_force_resultant(const contact::NitscheForm<dim>& form, LoadFacts
     for (const auto& [q, x, dx] : fem::cell_points(mesh::cell_map(mesh, c), rule))
     {
       magnitude += mesh::factorial<dim> * rule.weights[q] * f[q].norm();
-      resultant += dx * f[q];
+      resultant += dx * form.problem().weight(x) * f[q];
     }
     facts.largest_body_force = std::max(facts.largest_body_force, magnitude);
   }
@@ -59,8 +60,19 @@ struct BoundaryLoad
   double measure = 0;
 };
 
-/// The integral of g_N and the forces on rigid parts, whose moments count as forces over the size; sets the
-/// largest mean of their sizes over a boundary.
+/// The measure of a facet, with the weight r on the meridian of bodies of revolution.
+template <int dim>
+double weighted_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                        const mesh::BoundaryFacet& facet)
+{
+  return mesh::facet_geometry(mesh, facet.cell, facet.local).measure *
+         problem::mean_weight<dim>(
+             problem,
+             mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local)));
+}
+
+/// The integral of g_N and the forces on rigid parts, whose moments count as forces over the size, of bodies
+/// of revolution those for one radian; sets the largest mean of their sizes over a boundary.
 template <int dim>
 Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& facts)
 {
@@ -73,23 +85,24 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (form.problem().boundary(facet.tag).rigid)
-      loads[facet.tag].measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+      loads[facet.tag].measure += weighted_measure(form.problem(), mesh, facet);
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
     form.data().traction(k, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
     {
-      resultant += dx * g[q];
-      loads[facet.tag].magnitude += dx * g[q].norm();
-      loads[facet.tag].measure += dx;
+      const double weight = dx * form.problem().weight(x);
+      resultant += weight * g[q];
+      loads[facet.tag].magnitude += weight * g[q].norm();
+      loads[facet.tag].measure += weight;
     }
   }
   for (std::size_t tag = 0; tag < loads.size(); ++tag)
   {
     const auto& part = form.problem().boundary(static_cast<int>(tag)).rigid;
     if (!part) continue;
-    resultant += part->total_force();
-    loads[tag].magnitude =
-        part->total_force().norm() + part->total_moment().template lpNorm<1>() / facts.size;
+    const Point<dim> force = part->total_force() / form.problem().full_circle();
+    resultant += force;
+    loads[tag].magnitude = force.norm() + part->total_moment().template lpNorm<1>() / facts.size;
   }
   for (const BoundaryLoad& load : loads)
     if (load.measure > 0)
@@ -140,7 +153,7 @@ std::vector<Suction> find_suction(const contact::NitscheForm<dim>& form)
   return lowest;
 }
 
-/// The area of the boundaries that support the loads.
+/// The area of the boundaries that support the loads, of bodies of revolution that for one radian.
 template <int dim>
 double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh)
 {
@@ -149,7 +162,7 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
     if (problem.is_in_contact(facet.tag) || condition.holds_any())
-      measure += mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+      measure += weighted_measure(problem, mesh, facet);
   }
   return measure;
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/discrete_problem.h"
+#include "support/meridian_problem.h"
 #include "support/meshes.h"
 #include "tribound/doctor/units.h"
 
@@ -38,6 +39,24 @@ TEST(LoadFacts, TractionAndWhatHoldsIt)
   EXPECT_NEAR(loads.support_stress, 1, 1e-14);  // force 1 on a side of length 1
   EXPECT_NEAR(loads.stress(), 1, 1e-14);
   EXPECT_NEAR(loads.strain(), 0.01, 1e-14);
+}
+
+/// A force of 10 on a ring between r = 1 and 2, whose ends have the area 3 pi.
+TEST(LoadFacts, AreasOfBodiesOfRevolutionAreThoseOfTheFullCircle)
+{
+  const double stress = 10 / (3 * std::numbers::pi);
+  problem::BoundaryCondition<2> plate;
+  plate.name = "top";
+  plate.rigid.emplace().force[1] = -10;
+  for (const auto& top : {plate, pressed<2>("top", stress)})
+  {
+    const doctor::LoadFacts loads =
+        doctor::load_facts(MeridianProblem(box<2>({1, 0}, {2, 1}, {2, 2}),
+                                           {.boundaries = {fixed<2>("bottom", free, 0.0), top}}, {})
+                               .form);
+    EXPECT_NEAR(loads.traction_stress, stress, 1e-14);
+    EXPECT_NEAR(loads.support_stress, top.rigid ? stress / 2 : stress, 1e-14);  // plates support as well
+  }
 }
 
 TEST(LoadFacts, LoadsInEquilibriumDoNotReachTheSupports)
