@@ -109,8 +109,8 @@ def receding_contact(c, n=40):
     """The layer of height 1, loaded by 1 over |x| < c, on a half-plane of the same material: b, and the pressure as a function of x.
 
     With P(k), Q(k) the cosine transforms of pressure and load, the slopes of layer and half-plane agree for |x| < b if
-    int ((S + A)/2 + 1) P - (A - S)/2 Q) sin(k x) dk = 0, where S and A belong to loads that are symmetric and antisymmetric to the middle
-    of the layer. P = 2 P / 2 + (...) splits off Cauchy's kernel; the rest decays like exp(-k). Gauss-Chebyshev rules (Erdogan) make
+    int (((S + A)/2 + 1) P - (A - S)/2 Q) sin(k x) dk = 0, where S and A belong to loads that are symmetric and antisymmetric to the
+    middle of the layer. The 2 in (S + A)/2 + 1 = 2 + ((S + A)/2 - 1) is Cauchy's kernel; the rest decays like exp(-k). Gauss-Chebyshev rules (Erdogan) make
     it a homogeneous linear system, which is singular for the right b.
     """
     k, dk = np.polynomial.legendre.leggauss(600)

@@ -165,7 +165,7 @@ def random_observations(dice, mesh):
 
 
 def make_meridian(table, mesh):
-    """A body of revolution with what there is for it; the rules of the judge are not made for narrow bores."""
+    """A body of revolution, without what the judge does not integrate there: initial stresses, springs, sliders, narrow bores."""
     if mesh.lower[0] != 0 and mesh.lower[0] < 0.1 * mesh.upper[0]:
         return
     table["model"] = "axisymmetric"
