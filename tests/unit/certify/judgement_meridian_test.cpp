@@ -11,6 +11,7 @@
 
 #include "support/fields.h"
 #include "support/meridian_problem.h"
+#include "support/random_meridian_problem.h"
 #include "tribound/certify/truth/judgement.h"
 #include "tribound/certify/truth/solution_error.h"
 #include "tribound/certify/truth/their_forces.h"
@@ -101,6 +102,36 @@ TEST_P(MeridianJudgement, ConstantStressesHaveTheirDualNorm)
       EXPECT_NEAR(forces[b][1], (is_top ? 1.1 : -1.1) * pi * (1 - std::pow(GetParam(), 2)), 1e-12);
     }
   }
+}
+
+/// A stress that differs by a constant from the initial one, which varies, where nothing is displaced.
+TEST_P(MeridianJudgement, InitialStressesCount)
+{
+  problem::Region<2> region = heated(1e-2, formula("1 + x - 2*y"));
+  region.initial_stress = {formula("0.3 + x"), formula("y^2"), formula("x*y")};
+  region.initial_stress_zz = formula("0.1 + 2*x");
+  const MeridianProblem ours(random_meridian(GetParam(), 2, 3), ProblemData<2>{.regions = {region}},
+                             adapt::Method{.degree = 1});
+  const fem::LagrangeSpace<2> space(ours.mesh, 2);
+  Tensor<2> s;
+  s << 0.4, -0.2, -0.2, 1.1;
+  const double hoop = -0.8;
+  certify::ForeignSolution<2> solution{.degree = 2, .u = std::vector<double>(space.n_dofs(), 0.0)};
+  const std::vector<Point<2>> places = space.node_points();
+  for (Index c = 0; c < ours.mesh.n_cells(); ++c)
+    for (const Index node : space.cell_nodes(c))
+    {
+      solution.stress.push_back(s + ours.problem.initial_stress(0, places[node]));
+      solution.hoop.push_back(hoop + ours.problem.initial_stress_zz(0, places[node]));
+    }
+  const double nu = 0.3;
+  const double density =
+      ((1 + nu) * (s.squaredNorm() + hoop * hoop) - nu * std::pow(s.trace() + hoop, 2)) / 2;  // E = 2
+  const double expected = std::sqrt(pi * (1 - std::pow(GetParam(), 2)) * density);
+  const certify::Judgement found = certify::judge<2>(ours.problem, space, solution, ours.space,
+                                                     std::vector<double>(ours.space.n_dofs(), 0.0), 0.0);
+  ASSERT_TRUE(found.stress.has_value());
+  EXPECT_NEAR(found.stress->distance, expected, 1e-12 * expected);
 }
 
 /// The stress of a displacement is as far from that of another one as the displacements are, on finer meshes

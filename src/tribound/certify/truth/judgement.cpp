@@ -216,7 +216,6 @@ std::vector<RigidDifference> rigid_differences(const problem::Problem<dim>& prob
 }  // namespace
 
 // A square up to the part `doubt` of itself is that of a root up to the same part, at most.
-
 ErrorInterval error_interval(double distance, double bound, double doubt)
 {
   return {std::max(0.0, distance * (1 - rounding - doubt) - bound * (1 + rounding)),

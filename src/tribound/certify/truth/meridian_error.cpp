@@ -22,6 +22,7 @@ struct Meridional
   Tensor<2> plane;  ///< of a strain: the gradient
   double hoop;
 
+  Meridional operator+(const Meridional& other) const { return {plane + other.plane, hoop + other.hoop}; }
   Meridional operator-(const Meridional& other) const { return {plane - other.plane, hoop - other.hoop}; }
   [[nodiscard]] double product(const Meridional& other) const
   {
@@ -159,16 +160,20 @@ StressError meridian_stress_squares(const problem::Problem<2>& problem, const fe
                                     std::span<const double> u_ref)
 {
   StressError error{.cells = std::vector<double>(space.mesh().n_cells(), 0.0)};
-  error.doubt = for_each_overlap(  // r s has a degree more than s, r sigma that of u
-      space, reference_space, 2 * std::max(space.degree() + 1, reference_space.degree()),
+  const int of_initial = problem.has_initial_stress() ? 5 : 0;
+  error.doubt = for_each_overlap(  // r s has a degree more than s, r C eps(u) that of u
+      space, reference_space, 2 * std::max(space.degree() + 1, reference_space.degree()) + of_initial,
       [&](Index cell, const CellPoints& own, const CellPoints& reference, std::span<const Point<2>> points,
           std::span<const double> weights)
       {
-        const problem::Material& material = problem.material(space.mesh().region(cell));
+        const int region = space.mesh().region(cell);
+        const problem::Material& material = problem.material(region);
         for (int q = 0; q < std::ssize(points); ++q)
         {
           const Meridional strain = reference.strain(u_ref, q, points[q][0]);
-          const Meridional difference = own.stress(s, hoop, q) - stress_of(material, strain);
+          const Meridional initial{problem.initial_stress(region, points[q]),
+                                   problem.initial_stress_zz(region, points[q])};
+          const Meridional difference = own.stress(s, hoop, q) - (stress_of(material, strain) + initial);
           error.cells[cell] += weights[q] * compliance_square(material, difference);
         }
       });

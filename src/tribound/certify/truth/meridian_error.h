@@ -2,7 +2,7 @@
 
 /// @file meridian_error.h
 /// The integrals of solution_error.h for axisymmetric problems: with the weight r and the hoop strain, by
-/// rules for polynomials over r. They are those of one radian. There is no initial stress yet.
+/// rules for polynomials over r. They are those of one radian.
 
 #include <span>
 
