@@ -114,7 +114,6 @@ void Condensation::factorise(const SparseMatrix& k, int dim)
   ISDestroy(&rows);
   check(error, "factorising");
   if (!detail::factorise_cholesky(k, factors_.get())) throw SolveError(not_positive);
-  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "factorising");  // solves with the rest only
 }
 
 void Condensation::couple(const SparseRows& k)
@@ -139,8 +138,11 @@ std::vector<double> Condensation::by_first(const Work& work) const
   return result;
 }
 
-std::vector<std::vector<double>> Condensation::solve_sparse(std::span<const std::vector<double>> b) const
+/// `schur`: MUMPS's ICNTL(26), 0 to solve with the rest only, -1 with the Schur complement, too.
+std::vector<std::vector<double>> Condensation::solve_sparse(std::span<const std::vector<double>> b,
+                                                            int schur) const
 {
+  check(MatMumpsSetIcntl(factors_.get(), 26, schur), "solving a linear system");
   std::vector<std::vector<double>> x;
   if (sharing_ || b.size() == 1)
   {
@@ -179,7 +181,7 @@ std::vector<std::vector<double>> Condensation::solve_held(std::span<const std::v
   const auto has_forces = [](const std::vector<double>& forces)
   { return std::ranges::any_of(forces, [](double force) { return force != 0; }); };
   if (!ranks_.any(std::ranges::any_of(b, has_forces))) return {b.begin(), b.end()};
-  std::vector<std::vector<double>> u = solve_sparse(b);
+  std::vector<std::vector<double>> u = solve_sparse(b, 0);
   for (std::vector<double>& one : u)
     for (std::size_t i = 0; i < one.size(); ++i)
       if (position_[i] >= 0) one[i] = 0;
@@ -191,10 +193,7 @@ std::vector<std::vector<double>> Condensation::solve_held(std::span<const std::v
 std::vector<std::vector<double>> Condensation::solve_whole(std::span<const std::vector<double>> b) const
 {
   assert(n_layer_ == 0);  // else its factors are there
-  check(MatMumpsSetIcntl(factors_.get(), 26, -1), "solving a linear system");
-  std::vector<std::vector<double>> u = solve_sparse(b);
-  check(MatMumpsSetIcntl(factors_.get(), 26, 0), "solving a linear system");
-  return u;
+  return solve_sparse(b, -1);
 }
 
 /// With C_LL = L L^T and V = C_GL L^{-T}: S = C_GG - V V^T, W^T = V L^{-1}. L stays where MUMPS has left C.

@@ -83,7 +83,8 @@ class Condensation
   [[nodiscard]] bool owns(Index unknown) const;
   /// The values at these unknowns of all ranks, everywhere.
   [[nodiscard]] std::vector<double> of_all(std::span<const Index> own, std::span<const double> values) const;
-  [[nodiscard]] std::vector<std::vector<double>> solve_sparse(std::span<const std::vector<double>> b) const;
+  [[nodiscard]] std::vector<std::vector<double>> solve_sparse(std::span<const std::vector<double>> b,
+                                                              int schur) const;
   /// The result of work() on the first rank, everywhere.
   template <class Work>
   [[nodiscard]] std::vector<double> by_first(const Work& work) const;
