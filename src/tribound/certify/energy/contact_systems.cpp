@@ -38,8 +38,8 @@ void ContactSystems<dim>::condense()
   try
   {
     const std::vector<double> no_load(form_.space().n_dofs(), 0.0);
-    algebra::SparseRows k =
-        contact::stiffness(form_.problem(), form_.space(), form_.constraints(), &form_.springs());
+    algebra::SparseRows k = contact::stiffness(form_.problem(), form_.space(), form_.constraints(),
+                                               &form_.springs(), form_.meridian());
     diagonal_ = solve::diagonal(k, form_.space());
     condensed_ = std::make_unique<algebra::Condensation>(
         dim, std::move(k), std::vector<Index>{}, std::move(dofs.trace), no_load, form_.space().numbers());
@@ -88,6 +88,7 @@ std::vector<std::vector<double>> ContactSystems<dim>::solve(OnContact how,
   if (condensed_)
     if (auto u = solve_condensed(how, b, {starts.begin(), starts.end()}, tolerance)) return *u;
   std::vector<std::vector<double>> u;
+  u.reserve(b.size());
   for (std::size_t k = 0; k < b.size(); ++k) u.push_back(system(how).solve(b[k], starts[k], tolerance));
   return u;
 }
@@ -97,7 +98,7 @@ std::vector<std::vector<double>> ContactSystems<dim>::corrections(OnContact how,
                                                                   std::span<const std::vector<double>> r)
 {
   // in one pass where it was tried, on one process
-  if (how == OnContact::free && form_.space().mesh().ranks().size() == 1) return condensed_->solve_whole(r);
+  if (how == OnContact::free && shares_passes()) return condensed_->solve_whole(r);
   if (how == OnContact::held) return condensed_->solve_held(r);
   std::vector<std::vector<double>> result;
   for (const std::vector<double>& forces : r)

@@ -40,8 +40,11 @@ class ContactSystems
   [[nodiscard]] std::vector<std::vector<double>> solve(OnContact how, std::span<const std::vector<double>> b,
                                                        std::span<const std::vector<double>> starts,
                                                        double tolerance);
-  /// Whether several at once take less time than one after another.
-  [[nodiscard]] bool has_factors() const { return condensed_ != nullptr; }
+  /// Whether several at once take less time than one after another. Several processes solve one by one.
+  [[nodiscard]] bool shares_passes() const
+  {
+    return condensed_ != nullptr && form_.space().mesh().ranks().size() == 1;
+  }
 
  private:
   void condense();

@@ -269,7 +269,8 @@ auto LinearIntervals<dim>::limited(const LinearNumber<dim>& number, const Natura
     return result;
   const std::vector<std::vector<double>> none(loads.size(), std::vector<double>(space.n_dofs(), 0.0));
   std::vector<std::vector<double>> targets = systems_.solve(OnContact::free, loads, none, tight);
-  for (std::size_t k = 0; k < targets.size(); ++k) result[k].target = std::move(targets[k]);
+  for (std::size_t k = 0; k < targets.size(); ++k)
+    if (space.norm(loads[k]) > 0) result[k].target = std::move(targets[k]);
   return result;
 }
 
@@ -319,7 +320,7 @@ LinearInterval LinearIntervals<dim>::operator()(const LinearNumber<dim>& number,
   double smallest = first.radius;
   const double largest = first.radius / (mid * mid);  // with this m the radius cannot be smaller
   const std::array<double, 3> factors = {largest / 4, largest / 16, largest / 64};
-  const std::size_t together = systems_.has_factors() ? factors.size() : 1;
+  const std::size_t together = systems_.shares_passes() ? factors.size() : 1;
   std::vector<Limited> next;
   for (std::size_t attempt = 0; attempt < factors.size(); ++attempt)
   {
