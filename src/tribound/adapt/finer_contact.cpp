@@ -167,8 +167,10 @@ template <int dim>
 void require_carried(const contact::NitscheForm<dim>& form, std::span<const double> u,
                      const FinerContact<dim>& finer)
 {
-  const std::vector<double> before = contact::cell_energies<dim>(form.problem(), form.space(), u);
-  const std::vector<double> parts = contact::cell_energies<dim>(form.problem(), finer.form->space(), finer.u);
+  const std::vector<double> before =
+      contact::cell_energies<dim>(form.problem(), form.space(), u, form.meridian());
+  const std::vector<double> parts =
+      contact::cell_energies<dim>(form.problem(), finer.form->space(), finer.u, finer.form->meridian());
   double largest_u = 0;
   for (const double component : u) largest_u = std::max(largest_u, std::abs(component));
   std::vector<double> after(before.size(), 0.0);

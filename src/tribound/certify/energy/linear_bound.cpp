@@ -30,7 +30,7 @@ BoundedState<dim>::BoundedState(const contact::NitscheForm<dim>& of, const Obsta
 {
   if (!has_polynomial_loads || form.problem().has_initial_stress()) unresolved = bound.oscillation;
   std::vector<double> of_initial(forces.size(), 0.0);
-  contact::add_initial_stress<dim>(form.data(), form.space(), of_initial);
+  contact::add_initial_stress<dim>(form.data(), form.space(), of_initial, form.meridian());
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] -= of_initial[i];
   form.add_contact_load(t_h.at_points, forces);
 }

@@ -129,8 +129,7 @@ double QuantityBounds<dim>::value(const Item& item, std::span<const double> u,
   switch (item.kind())
   {
     case QuantityKind::energy:
-      return full_circle *
-             contact::stress_norms<dim>(form_.problem(), form_.space(), u, &form_.data()).energy;
+      return full_circle * contact::stress_norms<dim>(form_, u).energy;
     case QuantityKind::load_work:
       return full_circle * contact::load_work<dim>(form_, u);
     case QuantityKind::mean_displacement:

@@ -6,6 +6,7 @@
 
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/simplex_parts.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -28,9 +29,9 @@ void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& par
         parts.tag >= 0 ? facet.tag == parts.tag : form.problem().contact(facet.tag) != nullptr;
     if (!counts) continue;
     const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const Point<dim> middle =
-        mesh::facet_map(mesh, facet.cell, facet.local)(Point<dim - 1>::Constant(1.0 / dim));
-    const double measure = form.problem().weight(middle) * geometry.measure;
+    const auto vertices =
+        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+    const double measure = problem::mean_weight<dim>(form.problem(), vertices) * geometry.measure;
     sum.template head<dim>() += measure * geometry.normal;
     sum[dim] += measure;
   }
