@@ -136,14 +136,13 @@ std::string sections_text(std::span<const io::SectionRecord> sections, const io:
     append_cleared(section.V, force, numbers);
     if (!facts.is_axisymmetric) append_cleared(section.M, moment, numbers);
   }
-  const std::string units = facts.units.are_named()
-                                ? fmt::format("forces in {}, moments in {}; ", facts.label(UnitOf::force),
-                                              facts.label(UnitOf::moment))
-                                : std::string();
+  std::string units;
+  if (facts.units.are_named())
+    units = fmt::format("forces in {}{}; ", facts.label(UnitOf::force),
+                        facts.is_axisymmetric ? "" : ", moments in " + facts.label(UnitOf::moment));
   if (facts.is_axisymmetric)
     return number_table("sections", heads, lines) +
-           paragraph("", (facts.units.are_named() ? fmt::format("forces in {}; ", facts.label(UnitOf::force))
-                                                  : std::string()) +
+           paragraph("", units +
                              "of the full circle, on the part behind the section; along the axis in "
                              "equilibrium with the loads, without error bars");
   const std::string& note = sections[0].note;

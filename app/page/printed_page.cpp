@@ -21,8 +21,7 @@ namespace tribound::app
 namespace
 {
 
-constexpr std::array browser_names = {"chromium", "chromium-browser", "google-chrome",
-                                      "google-chrome-stable"};
+constexpr std::array browser_names = {"chromium", "chromium-browser", "google-chrome"};
 
 /// The title of report/src/index.html, which a page keeps until everything is drawn. A PDF has it as it is
 /// written here: other titles have a dash and are stored as UTF-16.

@@ -13,8 +13,6 @@ namespace tribound::case_file
 namespace
 {
 
-constexpr auto to_3d = "a model in 3D of a sector, or leave it out";
-
 [[noreturn]] void refuse(const Where& where, std::string_view what, const std::string& right)
 {
   throw InputError(where, fmt::format("a case with model = \"axisymmetric\" has no {}", what), right);

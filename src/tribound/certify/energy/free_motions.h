@@ -18,8 +18,8 @@ namespace tribound::certify
 
 /// The rigid motions of each body whose fixed components vanish on Gamma_D, as an orthonormal basis of their
 /// coefficients (contact::RigidModes): up to d(d+1)/2 for each body, one for a body of revolution, none for
-/// bodies that conditions hold.
-/// All ranks construct it and call its members together, and each has the motions of all bodies.
+/// bodies that conditions hold. All ranks construct it and call its members together, and each has the
+/// motions of all bodies.
 template <int dim>
 class FreeMotions
 {
