@@ -13,6 +13,7 @@
 #include "support/input_error.h"
 #include "support/meridian_problem.h"
 #include "tribound/adapt/error_bars.h"
+#include "tribound/certify/energy/quantity_parts.h"
 #include "tribound/certify/equilibrate/equilibrate.h"
 #include "tribound/io/record/sections.h"
 #include "verification/quantities.h"
@@ -132,6 +133,23 @@ TEST(AxisymmetricQuantities, SafetyIsThatOfCylinders)
   EXPECT_NE(message_of([&] { return of({.kind = QuantityKind::contact_moment}); })
                 .find("the moments on bodies of revolution cancel around the axis"),
             std::string::npos);
+}
+
+/// What quadrature may miss of the water in a cylindrical joint grows with its radius.
+TEST(AxisymmetricQuantities, WhatMayBeMissedOfUpliftHasTheWeight)
+{
+  std::vector<certify::KnownNumber> found;
+  for (const double radius : {2.0, 4.0})
+  {
+    ProblemData<2> data{.boundaries = {obstacle<2>("right", Coulomb(0.3)), fixed<2>("bottom", free, 0.0)}};
+    data.boundaries[0].contact->water = problem::Water(formula("0.05 + 0.02*sqrt(y + 0.001)"));
+    const MeridianProblem c(box<2>({radius - 1, 0}, {radius, 1}, {2, 2}), data, {.degree = 2});
+    const Quantity<2> safety{.kind = QuantityKind::safety_factor, .boundary = "right"};
+    found.push_back(certify::parts_of<2>(c.form, safety).uplift);
+  }
+  EXPECT_GT(found[0].uncertainty, 1e-12 * found[0].value);  // more than rounding
+  EXPECT_NEAR(found[1].value / found[0].value, 2, 1e-12);
+  EXPECT_NEAR(found[1].uncertainty / found[0].uncertainty, 2, 1e-12);
 }
 
 std::vector<io::SectionRecord> sections(const MeridianProblem& c, const std::vector<io::Section<2>>& of)

@@ -74,10 +74,11 @@ std::array<Point<dim>, dim - 1> tangents(const Point<dim>& n)
   }
 }
 
-/// The integral of p_w over a boundary.
+/// The integral of p_w over a boundary, on a meridian with the weight r.
 template <int dim>
 KnownNumber uplift_on(const contact::NitscheForm<dim>& form, int tag)
 {
+  const mesh::Mesh<dim>& mesh = form.space().mesh();
   std::array<double, 2> sums{};  // U, what quadrature may miss
   for (std::size_t k = 0; k < form.n_owned_segments(); ++k)
   {
@@ -85,10 +86,14 @@ KnownNumber uplift_on(const contact::NitscheForm<dim>& form, int tag)
     if (segment.slave.facet.tag != tag || !segment.contact->water) continue;
     for (const contact::ContactPoint<dim>& point : form.contact_points(k))
       sums[0] += point.weight * point.water;
+    const mesh::BoundaryFacet& facet = segment.slave.facet;
+    const double most = problem::largest_weight<dim>(
+        form.problem(),
+        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local)));
     for (const contact::ContactDatumPart<dim>& part : form.data().contact_parts(k))
-      sums[1] += 2 * part.water * segment.measure * fem::fraction<dim - 1>(part.part);
+      sums[1] += 2 * part.water * most * segment.measure * fem::fraction<dim - 1>(part.part);
   }
-  form.space().mesh().ranks().sum(std::span(sums));
+  mesh.ranks().sum(std::span(sums));
   constexpr double rounding = 1e-14;
   return {sums[0], sums[1] + rounding * sums[0]};
 }
