@@ -11,6 +11,7 @@
 #include "tribound/certify/energy/meridian_edge_forces.h"
 #include "tribound/contact/nitsche/contact_moments.h"
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -102,17 +103,21 @@ problem::Problem<dim> unloaded(const problem::Problem<dim>& problem, const mesh:
       [](problem::Region<dim>& region) { region.body_force = {}; });
 }
 
-/// The force and moment of the traction q on a rigid part.
+/// The force and moment of the traction q on a rigid part, of a body of revolution those on the full circle,
+/// which along the axis alone are used.
 template <int dim>
-void set_resultant(const mesh::Mesh<dim>& mesh, int tag, const Point<dim>& q, problem::RigidPart<dim>& part)
+void set_resultant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh, int tag,
+                   const Point<dim>& q, problem::RigidPart<dim>& part)
 {
   Point<dim + 1> sum = Point<dim + 1>::Zero();  // of x; the last entry: the measure
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     if (facet.tag != tag) continue;
-    const double measure = mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
-    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
-      sum.template head<dim>() += measure / dim * mesh.vertex(v);
+    const auto x =
+        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+    const double measure = problem.full_circle() * problem::mean_weight<dim>(problem, x) *
+                           mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    for (const Point<dim>& vertex : x) sum.template head<dim>() += measure / dim * vertex;
     sum[dim] += measure;
   }
   mesh.ranks().sum(std::span(sum.data(), sum.size()));
@@ -139,7 +144,7 @@ problem::Problem<dim> with_load_on(const problem::Problem<dim>& problem, const m
                        [&](problem::BoundaryCondition<dim>& boundary)
                        {
                          if (boundary.rigid)
-                           set_resultant<dim>(mesh, tag, q, *boundary.rigid);
+                           set_resultant<dim>(problem, mesh, tag, q, *boundary.rigid);
                          else
                            for (int a = 0; a < dim; ++a) boundary.traction[a] = problem::Field(q[a]);
                        });

@@ -151,12 +151,13 @@ class LoadSums
     missed_ += missed * largest.sum();
   }
 
-  /// Adds the force and the moment on a rigid part.
+  /// Adds the force and the moment on a rigid part, of axisymmetric problems for one radian.
   void add(const problem::RigidPart<dim>& part)
   {
     const auto moved = of_part(motion_, part);
     auto load = moved;
     load << part.total_force(), part.total_moment();
+    load /= problem_.full_circle();
     work_ += load.dot(moved);
     absolute_ += load.cwiseAbs().dot(moved.cwiseAbs());
   }

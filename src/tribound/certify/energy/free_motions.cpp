@@ -93,7 +93,8 @@ FreeMotions<dim>::FreeMotions(const problem::Problem<dim>& problem, const mesh::
   {
     const Eigen::Map<const Eigen::Matrix<double, n, n>> gram(&grams[static_cast<std::size_t>(b) * n * n]);
     const SymmetricEigen eigen = symmetric_eigen(gram(rigid, rigid));
-    const double largest = eigen.values[std::ssize(rigid) - 1];
+    // also where nothing but rounding acts along the axis
+    const double largest = symmetric_eigen(gram).values[n - 1];
     for (Eigen::Index i = 0; i < std::ssize(rigid) && eigen.values[i] <= held * largest; ++i)
     {
       is_unclear_ = is_unclear_ || eigen.values[i] > rounding * largest;

@@ -36,7 +36,7 @@ class EdgeForces
       add_body_force(c);
       subtract_stress(c, u);
     }
-    for (std::size_t number = 0; number < mesh_.boundary().size(); ++number) add_traction(number);
+    for (std::size_t number = 0; number < mesh_.boundary().size(); ++number) add_traction(number, u);
     for (std::size_t k = 0; k < form_.segments().size(); ++k)
       form_.segments()[k].for_each_side([&](const contact::SegmentSide<2>& side)
                                         { add_contact(k, side, t); });
@@ -102,15 +102,20 @@ class EdgeForces
     }
   }
 
-  void add_traction(std::size_t number)
+  /// g_N - K (u - u_0).
+  void add_traction(std::size_t number, std::span<const double> u)
   {
-    if (!form_.data().has_traction(number)) return;
+    const contact::SpringFacet<2>* const spring = form_.springs().on(number);
+    if (spring == nullptr && !form_.data().has_traction(number)) return;
     const mesh::BoundaryFacet& facet = mesh_.boundary()[number];
     const fem::Quadrature<1>& rule = form_.facet_rule();
     std::vector<Point<2>> g(rule.size());
     form_.data().traction(number, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh_, facet.cell, facet.local, rule))
+    {
+      if (spring != nullptr) g[q] += form_.springs().traction(*spring, u, q);
       of(facet) += dx * x[0] * rule.points[q][0] * (1 - rule.points[q][0]) * g[q];
+    }
   }
 
   void add_contact(std::size_t k, const contact::SegmentSide<2>& side, std::span<const Point<2>> t)

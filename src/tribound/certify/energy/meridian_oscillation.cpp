@@ -140,17 +140,26 @@ class BodyOscillation
   fem::MeridianRules rules_;
 };
 
-/// Adds those of tractions, and what quadrature may miss of them.
+/// Whether g_N - K (u - u_0) on a boundary facet is known to be a polynomial of degree p.
+bool is_polynomial(const contact::NitscheForm<2>& form, std::size_t number)
+{
+  const mesh::Mesh<2>& mesh = form.space().mesh();
+  const contact::SpringFacet<2>* const spring = form.springs().on(number);
+  return (spring == nullptr || spring->is_resolved) &&
+         contact::traction_datum(form.problem(), mesh, mesh.boundary()[number]).degree() <=
+             form.space().degree();
+}
+
+/// Adds those of tractions and springs, and what quadrature may miss of them.
 void add_tractions(const contact::NitscheForm<2>& form, std::span<const double> u, std::span<double> missed,
                    LoadOscillation& result)
 {
   const mesh::Mesh<2>& mesh = form.space().mesh();
-  const int p = form.space().degree();
   bool is_unknown = false;
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    if (contact::traction_datum(form.problem(), mesh, facet).degree() <= p) continue;
+    if (is_polynomial(form, k)) continue;
     const double largest = largest_radius(form, facet.cell, facet.local);
     if (largest == 0) continue;  // on the axis
     const std::array<Point<2>, 3> vertices = vertices_of(form, facet.cell);
@@ -168,7 +177,8 @@ void add_tractions(const contact::NitscheForm<2>& form, std::span<const double> 
     missed[facet.cell] += 2 * largest * mean;
   }
   if (mesh.ranks().any(is_unknown))
-    result.reason = fmt::format("tractions on cells that touch the axis are no polynomials of degree {}", p);
+    result.reason = fmt::format("tractions on cells that touch the axis are no polynomials of degree {}",
+                                form.space().degree());
 }
 
 }  // namespace

@@ -36,15 +36,8 @@ std::string meridian_unfit(const contact::NitscheForm<dim>& form)
 {
   const problem::Problem<dim>& problem = form.problem();
   if (!problem.is_axisymmetric()) return {};
-  if (!form.rigid_parts().empty()) return "bodies of revolution have rigid parts";
-  const auto is_on_springs = [](const auto& boundary) { return boundary.spring.has_value(); };
-  if (std::ranges::any_of(problem.boundaries(), is_on_springs)) return "bodies of revolution have springs";
   if (std::ranges::any_of(problem.regions(), &problem::Region<dim>::has_initial_stress))
     return "bodies of revolution have an initial stress or a temperature";
-  const auto slides = [](const contact::ContactSegment<dim>& segment)
-  { return std::holds_alternative<problem::Slider>(segment.contact->law); };
-  if (form.space().mesh().ranks().any(std::ranges::any_of(form.segments(), slides)))
-    return "bodies of revolution have sliders";
   return {};
 }
 
