@@ -56,6 +56,13 @@ def random_case(random: np.random.Generator) -> dict[str, Any]:
     E = float(random.uniform(0.5, 2))
     case["material"]["inner"] = {"E": E, "nu": nu, "where": random_half(random, box)}
     case["adapt"] = {"max_dofs": 3000, "max_levels": 12}
+    support = int(random.integers(5))
+    if support == 0:
+        case["boundary"]["right"]["spring"] = {"normal": float(random.uniform(0, 1)), "tangential": 0.2}
+    elif support == 1:
+        case["boundary"]["top"] = {"rigid": {"force": [0, -0.3]}}
+    elif support == 2:
+        case["boundary"]["top"] = {"slider": -0.03}
     return case
 
 

@@ -113,8 +113,7 @@ void set_resultant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& 
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     if (facet.tag != tag) continue;
-    const auto x =
-        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+    const auto x = mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
     const double measure = problem.full_circle() * problem::mean_weight<dim>(problem, x) *
                            mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
     for (const Point<dim>& vertex : x) sum.template head<dim>() += measure / dim * vertex;

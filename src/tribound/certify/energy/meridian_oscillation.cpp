@@ -7,9 +7,11 @@
 #include <limits>
 #include <vector>
 
+#include "tribound/base/dense_factors.h"
 #include "tribound/base/parallel.h"
 #include "tribound/certify/bound/meridian_terms.h"
 #include "tribound/certify/bound/poincare_korn.h"
+#include "tribound/certify/energy/traction_fit.h"
 #include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/contact/nitsche/given_data.h"
 #include "tribound/contact/nitsche/residual.h"
@@ -140,32 +142,80 @@ class BodyOscillation
   fem::MeridianRules rules_;
 };
 
-/// Whether g_N - K (u - u_0) on a boundary facet is known to be a polynomial of degree p.
-bool is_polynomial(const contact::NitscheForm<2>& form, std::size_t number)
+/// The directions in which a spring acts on a facet, one independently of the other.
+std::vector<Point<2>> spring_directions(const problem::BoundaryCondition<2>& boundary, const Point<2>& normal)
 {
-  const mesh::Mesh<2>& mesh = form.space().mesh();
-  const contact::SpringFacet<2>* const spring = form.springs().on(number);
-  return (spring == nullptr || spring->is_resolved) &&
-         contact::traction_datum(form.problem(), mesh, mesh.boundary()[number]).degree() <=
-             form.space().degree();
+  for (int a = 0; a < 2; ++a)
+    if (boundary.fixes(a)) return {Point<2>::Unit(1 - a)};
+  std::vector<Point<2>> directions;
+  if (!boundary.spring->normal.is_zero()) directions.push_back(normal);
+  if (!boundary.spring->tangential.is_zero()) directions.emplace_back(-normal[1], normal[0]);
+  return directions;
 }
 
-/// Adds those of tractions and springs, and what quadrature may miss of them.
+/// <= e . K e on the facet, K of degree 2: the least coefficient in Bernstein's basis.
+double least_along(const contact::SpringFacet<2>& spring, const fem::Quadrature<1>& rule, const Point<2>& e)
+{
+  const Eigen::MatrixXd basis = bernstein_at<2>(problem::most_of_stiffness, rule.points);
+  Eigen::VectorXd values(rule.size());
+  for (int q = 0; q < rule.size(); ++q) values[q] = e.dot(spring.stiffness.values[q] * e);
+  return CholeskyFactors(basis.transpose() * basis).solve(basis.transpose() * values).minCoeff();
+}
+
+/// An upper bound of (r (T - Pi_F^r T), w)_F / (r K w, w)_F^{1/2}, T = -K (u - u_0) with polynomials K and
+/// u_0 that rules integrate; infinite where K may vanish. Any projection onto P^p is farther from T than
+/// Pi_F^r.
+double spring_loss(const contact::NitscheForm<2>& form, const contact::SpringFacet<2>& spring,
+                   std::span<const double> u)
+{
+  const mesh::Mesh<2>& mesh = form.space().mesh();
+  const fem::Quadrature<1>& rule = form.facet_rule();
+  Eigen::MatrixXd theta(form.space().degree() + 1, rule.size());
+  Eigen::Matrix2Xd rest(2, rule.size());
+  for (int q = 0; q < rule.size(); ++q)
+  {
+    fem::orthonormal_values<1>(form.space().degree(), rule.points[q],
+                               std::span(theta.col(q).data(), theta.rows()));
+    rest.col(q) = form.springs().traction(spring, u, q);
+  }
+  const Eigen::Map<const Eigen::VectorXd> weights(rule.weights.data(), rule.size());
+  rest -= (rest * weights.asDiagonal() * theta.transpose()).eval() * theta;
+  const Eigen::Map<const Eigen::VectorXd> with_r(spring.weights.data(), rule.size());
+  double squares = 0;
+  for (const Point<2>& e : spring_directions(form.problem().boundary(mesh.boundary()[spring.number].tag),
+                                             mesh::facet_geometry(mesh, spring.cell, spring.local).normal))
+    if (const double square = (e.transpose() * rest).cwiseAbs2().dot(with_r); square > 0)
+    {
+      const double least = least_along(spring, rule, e);
+      squares += least > 0 ? square / least : std::numeric_limits<double>::infinity();
+    }
+  return std::sqrt(squares);
+}
+
+/// Adds those of tractions, and what quadrature may miss of them.
 void add_tractions(const contact::NitscheForm<2>& form, std::span<const double> u, std::span<double> missed,
                    LoadOscillation& result)
 {
   const mesh::Mesh<2>& mesh = form.space().mesh();
+  const int p = form.space().degree();
   bool is_unknown = false;
+  bool is_soft = false;
   for (std::size_t k = 0; k < mesh.n_owned_boundary(); ++k)
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
-    if (is_polynomial(form, k)) continue;
+    const contact::SpringFacet<2>* const spring = form.springs().on(k);
+    const bool is_polynomial = contact::traction_datum(form.problem(), mesh, facet).degree() <= p;
+    if (is_polynomial && (spring == nullptr || spring->is_resolved)) continue;
     const double largest = largest_radius(form, facet.cell, facet.local);
     if (largest == 0) continue;  // on the axis
     const std::array<Point<2>, 3> vertices = vertices_of(form, facet.cell);
     if (smallest_radius(vertices) == 0)
     {
-      is_unknown = true;
+      is_unknown = is_unknown || !is_polynomial || !spring->rest.is_polynomial;
+      if (is_unknown) continue;
+      const double loss = spring_loss(form, *spring, u);
+      is_soft = is_soft || std::isinf(loss);
+      result.cells[facet.cell] += std::sqrt(least_stiffness(form, facet.cell)) * loss;
       continue;
     }
     const auto [oscillation, mean] = contact::traction_remainder(form, k, u);
@@ -176,9 +226,10 @@ void add_tractions(const contact::NitscheForm<2>& form, std::span<const double> 
                                  constants.traces[facet.local] * 2 * mean / std::sqrt(measure));
     missed[facet.cell] += 2 * largest * mean;
   }
+  if (mesh.ranks().any(is_soft))
+    result.reason = "a spring whose stiffness varies on a cell that touches the axis may be 0 there";
   if (mesh.ranks().any(is_unknown))
-    result.reason = fmt::format("tractions on cells that touch the axis are no polynomials of degree {}",
-                                form.space().degree());
+    result.reason = fmt::format("tractions on cells that touch the axis are no polynomials of degree {}", p);
 }
 
 }  // namespace
