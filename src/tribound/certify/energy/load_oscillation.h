@@ -15,8 +15,7 @@ namespace tribound::certify
 {
 
 /// |(f - Pi f, w) + (g - Pi g, w)_N - (sigma_0 - Pi^p sigma_0, eps(w))| <= sum_T O_T ||w||_en,T + missed
-/// ||w||_en for all w that vanish where Gamma_D fixes them, g = g_N - K (u - u_0). On a meridian the squares
-/// of ||w||_en,T may contain those of springs, (r K w, w) on facets of T.
+/// ||w||_en for all w that vanish where Gamma_D fixes them, g = g_N - K (u - u_0).
 struct LoadOscillation
 {
   std::vector<double> cells;  ///< O_T of the own cells

@@ -16,7 +16,8 @@ namespace tribound::certify
 [[nodiscard]] double axial_constant(std::array<Point<2>, 3> vertices);
 
 /// load_oscillation() for rho = r (f - f~), f~ of MeridianFields::load(), and r (g_N - Pi g_N), Pi the
-/// projection onto P^p with the weight r.
+/// projection onto P^p with the weight r. On cells that touch the axis what springs lose counts with their
+/// own energy: the squares of ||w||_en,T contain (r K w, w) on facets of T.
 [[nodiscard]] LoadOscillation meridian_load_oscillation(const contact::NitscheForm<2>& form,
                                                         std::span<const double> u, double korn);
 
