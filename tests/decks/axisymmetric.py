@@ -42,7 +42,7 @@ def weight():
 
 
 def pressed_cylinder():
-    """A cylinder is pressed on a wider one; the meshes match there, as cases of bodies of revolution need it."""
+    """A cylinder is pressed on a wider one; the meshes match there."""
     return [*plane("CAX8", "CAX8R", cells_below=5), *step(*moved("TOP", 2, -0.02), supports=["BASE", "TOP"], pairs=[("UP_BASE", "LOW_TOP")])]
 
 
@@ -56,4 +56,25 @@ def shrunk_ring():
             *step(supports=list(ends), pairs=[("BORE", "OUTSIDE")])]
 
 
-DECKS = {"21_thick_cylinder": thick_cylinder, "22_spinning_ring": spinning_ring, "23_weight": weight, "24_pressed_cylinder": pressed_cylinder, "25_shrunk_ring": shrunk_ring}
+def hot_shaft():
+    """A hollow shaft between two planes becomes hot and presses on the ring around it, which becomes less so and has no plane above. The meshes match."""
+    shaft, hub = Body("SHAFT", "CAX8R", breaks(5, (10, 4)), breaks(0, (6, 4))), Body("HUB", "CAX6", breaks(10, (16, 5)), breaks(0, (6, 4)))
+    return [*mesh_lines(shaft, hub), *node_set("BASE", (shaft, at(1, 0)), (hub, at(1, 0))), *node_set("END", (shaft, at(1, 6))),
+            *surface("OUTSIDE", shaft, at(0, 10)), *surface("BORE", hub, at(0, 10)),
+            *material((shaft, hub), more=["*EXPANSION, ZERO=20.", "1.2e-5"]), *contact("BORE", "OUTSIDE"), *fixed(("BASE", 2, 2), ("END", 2, 2)),
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE", "NSHAFT, 20.", "NHUB, 20.",
+            *step("*TEMPERATURE", "NSHAFT, 170.", "NHUB, 50.", supports=["BASE", "END"], pairs=[("BORE", "OUTSIDE")])]
+
+
+def rigid_lid():
+    """A ring under a lid that is rigid: a force on its reference node, of the full circle, presses it on a wider ring."""
+    low, up = Body("LOW", "CAX8", breaks(2, (4, 2), (10, 6), (14, 4)), breaks(0, (6, 4))), Body("UP", "CAX8R", breaks(4, (10, 6)), breaks(6, (12, 4)))
+    lid, rotation = 90001, 90002
+    return [*mesh_lines(low, up), "*NODE", f"{lid}, 0., 15., 0.", f"{rotation}, 0., 15., 0.", *node_set("BASE", (low, at(1, 0))), *node_set("LID", (up, at(1, 12))),
+            *surface("LOW_TOP", low, at(1, 6)), *surface("UP_BASE", up, at(1, 6)), *material((low, up)), *contact("UP_BASE", "LOW_TOP", "NODE TO SURFACE", mu=0.25),
+            f"*RIGID BODY, NSET=LID, REF NODE={lid}, ROT NODE={rotation}", *fixed(("BASE", 2, 2), (lid, 1, 1), (lid, 3, 3), (rotation, 1, 3)),
+            *step("*CLOAD", f"{lid}, 2, -5.e4", supports=["BASE"])]
+
+
+DECKS = {"21_thick_cylinder": thick_cylinder, "22_spinning_ring": spinning_ring, "23_weight": weight, "24_pressed_cylinder": pressed_cylinder, "25_shrunk_ring": shrunk_ring,
+         "26_hot_shaft": hot_shaft, "27_rigid_lid": rigid_lid}

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 #include <string>
 
@@ -126,13 +127,53 @@ TEST_F(ImportDisc, WeightAndRotationAreAboutTheAxis)
                 HasSubstr("has no direction in which it can act"));
 }
 
-TEST_F(ImportDisc, WhatItDoesNotHaveYetIsNamed)
+/// The top of the disc moves with node 99.
+struct RigidTop
 {
-  const std::string rigid = "*RIGID BODY, NSET=base, REFNODE=1\n";
-  const std::string message = message_of([&] { return import_disc("*DSLOAD\ntop, P, 1.\n", rigid); });
-  EXPECT_THAT(message, HasSubstr("*RIGID BODY: has no counterpart yet in a case of bodies of revolution"));
-  const case_file::ImportedDeck deck = import_disc("*DSLOAD\ntop, P, 1.\n", rigid, {"RIGID BODY"});
-  EXPECT_THAT(config_of(deck).not_covered, testing::ElementsAre(HasSubstr("RIGID BODY")));
+  const char* constraint;
+  const char* keyword;
+};
+
+constexpr std::array rigid_tops = {
+    RigidTop{"*NODE\n99, 0., 3.\n98, 0., 3.\n*RIGID BODY, NSET=lid, REFNODE=99, ROTNODE=98\n"
+             "*BOUNDARY\n98, 3, 3\n",
+             "RIGID BODY"},
+    RigidTop{"*NODE\n99, 0., 3.\n*COUPLING, REFNODE=99, SURFACE=top, CONSTRAINTNAME=c\n*KINEMATIC\n1, 2\n"
+             "*BOUNDARY\n99, 6, 6\n",
+             "COUPLING"}};
+
+TEST_F(ImportDisc, RigidPartsMoveAlongTheAxis)
+{
+  for (const auto& [constraint, keyword] : rigid_tops)
+  {
+    const std::string model = fmt::format("*NSET, NSET=lid\n4, 5, 6\n{}", constraint);
+    const auto rigid_of = [&](const case_file::Config& config) -> const case_file::RigidConfig&
+    {
+      return *std::ranges::find_if(config.boundaries, [](const auto& b) { return b.rigid.has_value(); })
+                  ->rigid;
+    };
+    const case_file::Config pressed =
+        config_of(import_disc("*CLOAD\n99, 2, -7.\n99, 1, 5.\n", model + "*BOUNDARY\n99, 1, 1\n"));
+    EXPECT_EQ(value(rigid_of(pressed).force[0], 1), 0) << "its support carries the radial force";
+    EXPECT_EQ(value(rigid_of(pressed).force[1], 1), -7) << "of the full circle";
+    EXPECT_TRUE(rigid_of(pressed).moment.empty());
+    EXPECT_TRUE(pressed.not_covered.empty());
+
+    const case_file::Config moved =
+        config_of(import_disc("*BOUNDARY\n99, 2, 2, -.1\n", model + "*BOUNDARY\n99, 1, 1\n"));
+    const auto lid = std::ranges::find_if(
+        moved.boundaries, [](const auto& b) { return b.displacement[0] && b.displacement[1]; });
+    ASSERT_NE(lid, moved.boundaries.end());
+    EXPECT_EQ(value(*lid->displacement[0], 1), 0);
+    EXPECT_EQ(value(*lid->displacement[1], 1), -0.1);
+
+    const std::string free = message_of([&] { return import_disc("*CLOAD\n99, 2, -7.\n", model); });
+    EXPECT_THAT(free, HasSubstr(fmt::format("*{}: ", keyword)));
+    EXPECT_THAT(free, HasSubstr("x of the reference node is free"));
+    const case_file::Config accepted = config_of(import_disc("*CLOAD\n99, 2, -7.\n", model, {keyword}));
+    EXPECT_EQ(value(rigid_of(accepted).force[1], 1), -7);
+    EXPECT_THAT(accepted.not_covered, testing::ElementsAre(HasSubstr("moves along the axis alone")));
+  }
 }
 
 /// A ring on the disc, pressed on it by two steps.
@@ -146,9 +187,25 @@ TEST_F(ImportDisc, TouchesWithFrictionInItsSteps)
   const std::string steps = "*DSLOAD\nhead, P, 1.\n*END STEP\n*STEP\n*STATIC\n.5, 1.\n*DSLOAD\nhead, P, 4.\n";
   const case_file::Config config = config_of(import_disc(steps, ring));
   ASSERT_EQ(config.contacts.size(), 1U);
-  EXPECT_TRUE(config.quantities.empty()) << "a case of bodies of revolution has none";
+  ASSERT_EQ(config.quantities.size(), 1U);
+  EXPECT_THAT(config.quantities[0].direction, testing::ElementsAre(0, 1));
   ASSERT_TRUE(config.history);
   EXPECT_NEAR(value(*boundary(config, "head").pressure, 1.5), 2.5, 1e-12);
+}
+
+/// A ring around the disc: the force with which it is pressed on it is radial.
+TEST_F(ImportDisc, ForcesOnCylindersAreRadial)
+{
+  const std::string ring =
+      "*NODE\n11, 2, 0\n12, 3, 0\n13, 3, 1\n14, 2, 1\n*ELEMENT, TYPE=CAX4, ELSET=ring\n9, 11, 12, 13, 14\n"
+      "*SURFACE, NAME=bore\nring, S4\n*SURFACE, NAME=rim\n2, S2\n"
+      "*SOLID SECTION, ELSET=ring, MATERIAL=steel\n*SURFACE INTERACTION, NAME=touch\n"
+      "*CONTACT PAIR, INTERACTION=touch\nbore, rim\n*CLEARANCE, SLAVE=bore, MASTER=rim, VALUE=-.01\n"
+      "*NSET, NSET=foot\n11, 12\n*BOUNDARY\nfoot, 2, 2\n";
+  const case_file::Config config = config_of(import_disc("", ring));
+  ASSERT_EQ(config.quantities.size(), 1U);
+  EXPECT_EQ(config.quantities[0].boundary, "bore");
+  EXPECT_TRUE(config.quantities[0].direction.empty()) << "the mean normal";
 }
 
 TEST_F(ImportDisc, PlaneElementsBesideItAreRefused)

@@ -121,7 +121,7 @@ Node::Table CaseMaker::boundary(const Groups::Part& part) const
   {
     if (!part.is_in(group_of_rigid_[i])) continue;
     if (!table.empty())
-      log_.refuse(deck_.rigids[i].place, "RIGID BODY",
+      log_.refuse(deck_.rigids[i].place, deck_.rigids[i].keyword,
                   fmt::format("{} has other supports or loads", deck_.rigids[i].target),
                   "loads of a rigid body act at its reference node");
     else
@@ -252,10 +252,12 @@ void CaseMaker::add_gap(const PairGroups& pair, Node::Table& table)
                   given.slave, given.master, *given.adjust));
 }
 
-/// The force of every contact whose slave is one boundary; cases of bodies of revolution have none.
+/// The force of every contact whose slave is one boundary: along its mean normal; on a body of revolution
+/// along the axis, but across it on cylinders.
 void CaseMaker::add_quantities(Node::Table& table) const
 {
-  if (faces_.is_axisymmetric()) return;
+  constexpr double rounding = 1e-10;
+  const auto is_across_axis = [&](Index face) { return std::abs(faces_.normal(face)[1]) <= rounding; };
   Node::Array quantities;
   for (const PairGroups& pair : pairs_)
   {
@@ -265,6 +267,8 @@ void CaseMaker::add_quantities(Node::Table& table) const
     put(quantity, "name", {fmt::format("contact force on {}", std::get<std::string>(slave.value)), {}});
     put(quantity, "kind", {std::string("contact_force"), {}});
     put(quantity, "boundary", std::move(slave));
+    if (faces_.is_axisymmetric() && !std::ranges::all_of(face_groups_.members(pair.slave), is_across_axis))
+      put(quantity, "direction", {Node::Array{{0.0, {}}, {1.0, {}}}, {}});
     quantities.push_back({std::move(quantity), {}});
   }
   if (!quantities.empty()) put(table, "quantity", {std::move(quantities), {}});

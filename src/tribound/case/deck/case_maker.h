@@ -80,6 +80,8 @@ class CaseMaker
   [[nodiscard]] Node::Table boundary(const Groups::Part& part) const;
   /// The motion of a rigid body: `rigid`, or `displacement` where all of it is given.
   void add_rigid(const DeckRigid& rigid, Index number, Node::Table& table) const;
+  [[nodiscard]] Node::Array fixed_motions(const DeckRigid& rigid, const std::vector<int>& motions,
+                                          const std::array<const Course*, 6>& given) const;
   [[nodiscard]] Node rigid_displacement(const DeckRigid& rigid,
                                         const std::array<const Course*, 6>& motions) const;
   /// The loads or motions of a rigid body by component; null where there is none.

@@ -17,38 +17,60 @@ std::array<const Course*, 6> CaseMaker::courses_of(Index rigid, DeckLoadKind kin
 
 void CaseMaker::add_rigid(const DeckRigid& rigid, Index number, Node::Table& table) const
 {
-  const bool is_plane = faces_.dim() == 2;
-  const std::vector<int> motions = is_plane ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
   const auto given = courses_of(number, DeckLoadKind::rigid_motion);
-  const auto is_held = [&](int m) { return given[m] != nullptr; };
-  if (std::ranges::all_of(motions, is_held))
+  const std::vector<int> motions = faces_.dim() == 2 ? std::vector{0, 1, 5} : std::vector{0, 1, 2, 3, 4, 5};
+  if (std::ranges::all_of(motions, [&](int m) { return given[m] != nullptr; }))
     return put(table, "displacement", rigid_displacement(rigid, given));
 
-  constexpr std::array<const char*, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
   Node::Table content;
   const auto loads = courses_of(number, DeckLoadKind::rigid_force);
   const auto datum = [&](int m) {
     return loads[m] == nullptr ? Node{0.0, {}} : loads[m]->datum(1, times_.empty());
   };
   Node::Array force;
-  for (int c = 0; c < faces_.dim(); ++c) force.push_back(datum(c));
-  put(content, "force", {std::move(force), {}});
-  put(content, "moment", is_plane ? datum(5) : Node{Node::Array{datum(3), datum(4), datum(5)}, {}});
   Node::Array point;
-  for (int c = 0; c < faces_.dim(); ++c) point.push_back({assembler_.mesh().nodes[rigid.reference][c], {}});
+  for (int c = 0; c < faces_.dim(); ++c)
+  {
+    // What widens or tilts a section of revolution goes into its supports.
+    force.push_back(faces_.is_axisymmetric() && c == 0 ? Node{0.0, {}} : datum(c));
+    point.push_back({assembler_.mesh().nodes[rigid.reference][c], {}});
+  }
+  put(content, "force", {std::move(force), {}});
+  if (faces_.dim() == 3)
+    put(content, "moment", {Node::Array{datum(3), datum(4), datum(5)}, {}});
+  else if (!faces_.is_axisymmetric())
+    put(content, "moment", datum(5));
   put(content, "point", {std::move(point), {}});
+  if (Node::Array fixed = fixed_motions(rigid, motions, given); !fixed.empty())
+    put(content, "fixed", {std::move(fixed), {}});
+  put(table, "rigid", {std::move(content), {}});
+}
+
+/// Their names. A body of revolution needs all but that along the axis.
+Node::Array CaseMaker::fixed_motions(const DeckRigid& rigid, const std::vector<int>& motions,
+                                     const std::array<const Course*, 6>& given) const
+{
+  constexpr std::array<const char*, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
   Node::Array fixed;
   for (const int m : motions)
   {
-    if (!is_held(m)) continue;
+    if (given[m] == nullptr)
+    {
+      if (faces_.is_axisymmetric() && m != 1)
+        log_.drop(rigid.place, rigid.keyword,
+                  fmt::format("{}: {} of the reference node is free, and the deck widens or tilts the "
+                              "section; a rigid part of revolution moves along the axis alone",
+                              rigid.target, names[m]),
+                  "components 1 and 6 of the reference node held at 0");
+      continue;
+    }
     if (!given[m]->is_constant() || given[m]->last() != 0)
-      log_.refuse(rigid.place, "RIGID BODY",
+      log_.refuse(rigid.place, rigid.keyword,
                   fmt::format("{}: {} is given, and other motions are free", rigid.target, names[m]),
                   "give all motions, or hold them at 0");
     fixed.push_back({std::string(names[m]), {}});
   }
-  if (!fixed.empty()) put(content, "fixed", {std::move(fixed), {}});
-  put(table, "rigid", {std::move(content), {}});
+  return fixed;
 }
 
 /// u = t + w x (x - point), for small rotations w.

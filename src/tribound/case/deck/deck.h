@@ -49,6 +49,7 @@ struct DeckPair
 struct DeckRigid
 {
   mesh::InpPlace place;
+  std::string keyword;  ///< "RIGID BODY" or "COUPLING"
   std::string target;
   std::vector<Index> faces;
   Index reference;      ///< its node

@@ -26,9 +26,6 @@ constexpr std::string_view other_analyses =
     "UNCOUPLED TEMPERATURE-DISPLACEMENT|VISCO|MODAL DYNAMIC|STEADY STATE DYNAMICS|ELECTROMAGNETICS|"
     "CFD|GREEN|SUBSTRUCTURE GENERATE|SENSITIVITY|COMPLEX FREQUENCY|CRACK PROPAGATION|MASS FLOW|";
 
-/// What cases of bodies of revolution do not have.
-constexpr std::string_view not_axisymmetric = "|RIGID BODY|COUPLING|KINEMATIC|DISTRIBUTING|";
-
 bool is_among(const std::string& keyword, std::string_view names)
 {
   return names.find("|" + keyword + "|") != std::string_view::npos;
@@ -118,10 +115,7 @@ Deck DeckReader::read()
   {
     const std::string& name = block.keyword.name;
     const auto handler = handlers().find(name);
-    if (faces_.is_axisymmetric() && is_among(name, not_axisymmetric))
-      log_.drop(block.keyword.place, name, "has no counterpart yet in a case of bodies of revolution",
-                "a sector as a model in 3D");
-    else if (handler != handlers().end())
+    if (handler != handlers().end())
     {
       check_parameters(block);
       (this->*handler->second)(block);

@@ -23,7 +23,8 @@ void DeckReader::read_rigid_body(const Block& block)
   const std::optional<std::string> set = block.keyword.find("NSET");
   if (!set) return drop(block);
   const std::vector<Index> nodes = assembler_.nodes_named(*set, block.keyword.place);
-  DeckRigid rigid{block.keyword.place, *set, faces_.with_all_nodes(nodes), node_of(block, "REFNODE")};
+  DeckRigid rigid{block.keyword.place, block.keyword.name, *set, faces_.with_all_nodes(nodes),
+                  node_of(block, "REFNODE")};
   if (block.keyword.find("ROTNODE")) rigid.rotation = node_of(block, "ROTNODE");
   std::vector<Index> lone;
   std::ranges::set_difference(nodes, faces_.nodes_on(rigid.faces), std::back_inserter(lone));
@@ -70,7 +71,7 @@ void DeckReader::read_kinematic(const Block& block)
   if (coupling.keyword.find("ORIENTATION"))
     return log_.drop(coupling.keyword.place, "COUPLING", "its axes are not those of the deck");
   const std::string surface = required(coupling, "SURFACE");
-  deck_.rigids.push_back({coupling.keyword.place, surface,
+  deck_.rigids.push_back({coupling.keyword.place, coupling.keyword.name, surface,
                           faces_of_surface(assembler_, faces_, surface, coupling.keyword.place),
                           node_of(coupling, "REFNODE")});
   take(coupling, fmt::format("{} moves as a rigid body", surface));
