@@ -313,20 +313,20 @@ Point<dim> moment_point(const OutputConfig& output, const mesh::Mesh<dim>& mesh)
 namespace
 {
 
-std::string label(problem::QuantityKind kind, const problem::Units& units, int dimension)
+std::string label(problem::QuantityKind kind, const io::CaseFacts& facts)
 {
   switch (kind)
   {
     case problem::QuantityKind::energy:
     case problem::QuantityKind::load_work:
-      return units.label(problem::UnitOf::energy, dimension);
+      return facts.label(problem::UnitOf::energy);
     case problem::QuantityKind::contact_force:
     case problem::QuantityKind::spring_force:
-      return units.label(problem::UnitOf::force, dimension);
+      return facts.label(problem::UnitOf::force);
     case problem::QuantityKind::contact_moment:
-      return units.label(problem::UnitOf::moment, dimension);
+      return facts.label(problem::UnitOf::moment);
     case problem::QuantityKind::mean_displacement:
-      return units.label(problem::UnitOf::length, dimension);
+      return facts.label(problem::UnitOf::length);
     case problem::QuantityKind::safety_factor:
       return {};
   }
@@ -348,7 +348,7 @@ io::CaseFacts case_facts(const Config& config, int dimension)
                       .not_covered = config.not_covered,
                       .is_axisymmetric = config.is_axisymmetric};
   for (const QuantityConfig& quantity : config.quantities)
-    facts.quantity_units.emplace_back(quantity.name, label(quantity.kind, config.units, dimension));
+    facts.quantity_units.emplace_back(quantity.name, label(quantity.kind, facts));
   return facts;
 }
 

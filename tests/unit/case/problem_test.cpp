@@ -72,6 +72,10 @@ TEST(CaseFacts, HaveTheUnitOfEveryQuantity)
                   "energy: kN m/m", "load_work: kN m/m", "contact_force: kN/m", "contact_moment: kN m/m",
                   "safety_factor top: ", "mean_displacement top: m", "spring_force top: kN/m"));
   EXPECT_THAT(units_of("", 2), testing::Contains("energy: "));
+  const case_file::Config ring = case_file::parse_config(
+      "model = 'axisymmetric'\n" + file_head + "[units]\nlength = 'm'\nforce = 'kN'\n" +
+      "[[quantity]]\nkind = 'contact_force'\nboundary = 'top'\n");
+  EXPECT_EQ(case_file::case_facts(ring, 2).quantity_units.at(0).second, "kN") << "of the full circle";
 }
 
 TEST(CaseFacts, UnitsAreLabels)
