@@ -21,7 +21,8 @@ namespace
 void check_contact(const problem::Contact& contact)
 {
   if (contact.base)
-    refuse(contact.base->where, "bases of hydraulic structures", "water = { pressure = ... } in the joint");
+    refuse(contact.base->where, "bases from heel to toe: nothing slides or turns over across the axis",
+           "water = { pressure = \"...\" }, a formula of x; the effective force is that of all joints");
 }
 
 /// The part moves along the axis alone: it needs no point.
