@@ -195,24 +195,24 @@ template <int dim>
 Statements statements(const contact::NitscheForm<dim>& form, ContactRule rule,
                       const std::optional<FriedrichsConstant>& friedrichs)
 {
+  const problem::Problem<dim>& problem = form.problem();
+  const auto where = [](bool holds, const char* words) { return std::string(holds ? words : ""); };
   Statements result;
   result.covered = {
       "the dual norm of the residual of the computed displacement: the largest <R(u_h), v> over all v in "
-      "H^1, "
-      "zero where displacements are prescribed" +
-          std::string(form.problem().has_rigid_parts() ? " and a rigid motion on each rigid part" : "") +
-          (form.problem().is_axisymmetric()
-               ? ", with ||grad v||^2 + ||v_r / r||^2 + sum_F ||v||_F^2 / h_F = 1, integrals over the "
-                 "meridian with the weight r, over contact facets F"
-               : ", with ||grad v||^2 + sum_F ||v||_F^2 / h_F = 1 over contact facets F") +
-          std::string(form.problem().has_springs() ? " and those on springs" : "") +
-          std::string(form.problem().pairs().empty()
-                          ? "; no unknown constant"
-                          : ", between bodies with the jump of v over the segments on which a facet of one "
-                            "lies opposite a facet of the other; no unknown constant"),
+      "H^1, zero where displacements are prescribed" +
+          where(problem.has_rigid_parts(), " and a rigid motion on each rigid part") + ", with ||grad v||^2" +
+          where(problem.is_axisymmetric(), " + ||v_r / r||^2") +
+          " + sum_F ||v||_F^2 / h_F = 1 over contact facets F" +
+          where(problem.has_springs(), " and those on springs") +
+          where(
+              !problem.pairs().empty(),
+              ", between bodies with the jump of v over the segments on which a facet of one lies opposite a "
+              "facet of the other") +
+          where(problem.is_axisymmetric(), ", integrals over the meridian with the weight r") +
+          "; no unknown constant",
       "the errors of discretisation, of the data, of the contact and friction conditions, of stopping "
-      "Newton's "
-      "method, and of solving its linear systems"};
+      "Newton's method, and of solving its linear systems"};
   if (!form.problem().pairs().empty())
     result.covered.emplace_back(
         "what contact tractions lose between meshes that do not match (mor); forces on slave and master are "
