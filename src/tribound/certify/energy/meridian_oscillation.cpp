@@ -159,7 +159,10 @@ double least_along(const contact::SpringFacet<2>& spring, const fem::Quadrature<
   const Eigen::MatrixXd basis = bernstein_at<2>(problem::most_of_stiffness, rule.points);
   Eigen::VectorXd values(rule.size());
   for (int q = 0; q < rule.size(); ++q) values[q] = e.dot(spring.stiffness.values[q] * e);
-  return CholeskyFactors(basis.transpose() * basis).solve(basis.transpose() * values).minCoeff();
+  const Eigen::VectorXd coefficients =
+      CholeskyFactors(basis.transpose() * basis).solve(basis.transpose() * values);
+  constexpr double rounding = 1e-12;  // of the largest
+  return coefficients.minCoeff() - rounding * coefficients.maxCoeff();
 }
 
 /// An upper bound of (r (T - Pi_F^r T), w)_F / (r K w, w)_F^{1/2}, T = -K (u - u_0) with polynomials K and
