@@ -24,11 +24,12 @@ function plainWords(run) {
   const bars = quantities.filter(({ reason }) => !reason);
   const condition = energy?.guaranteed_for === "tresca_with_computed_threshold" ? ", for the computed friction threshold" : "";
   const step = steps ? " of the last load step, after the computed slip of those before it" : "";
+  const exactly = step + condition;
   const guaranteed = run.bound === null || run.bound === undefined ? [] : [
     relative > 0 && !steps ? `The computed displacement leaves forces that do not balance, in the body, at its boundary and in contact. They are at most ${percent(relative)} of the stress, measured as below.` : null,
     steps ? "In each load step the computed displacement leaves forces that do not balance. Their largest size, measured as below, stands in the table of steps." : null,
-    energy?.relative > 0 ? `The computed displacement is at most ${percent(energy.relative)} away from the exact one${step || " of this model"}${condition}, in the energy norm.` : null,
-    bars.length > 0 ? `${bars.length === 1 ? "One number has" : `${bars.length} numbers have`} an interval in which the exact value${step}${condition && `${condition},`} is certain to lie: ${bars.map(({ name }) => name).join(", ")}.` : null].filter(Boolean);
+    energy?.relative > 0 ? `The computed displacement is at most ${percent(energy.relative)} away from the exact one${steps ? exactly : ` of this model${condition}`}, in the energy norm.` : null,
+    bars.length > 0 ? `${bars.length === 1 ? "One number has" : `${bars.length} numbers have`} an interval in which the exact value${exactly && `${exactly},`} is certain to lie: ${bars.map(({ name }) => name).join(", ")}.` : null].filter(Boolean);
   const open = ["Single values: the largest stress, the largest pressure, values at points and along lines, and all pictures are those of the computed solution.",
     run.balance ? "Forces, moments and factors of safety are in equilibrium with the loads, but the bound does not cover them." : null,
     "Whether model, loads, supports and materials describe the structure is for the engineer to judge."].filter(Boolean);
