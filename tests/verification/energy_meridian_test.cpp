@@ -124,32 +124,6 @@ TEST(EnergyMeridian, IsABoundInRandomCases)
   }
 }
 
-/// Two rings, or a ring around a disc, that press each other; their meshes match or not.
-MeridianProblem rings(unsigned seed, int p)
-{
-  RandomMeridian random{std::mt19937(seed)};
-  const double inner = seed % 2 == 0 ? 0 : 0.2;
-  const int n = 2;
-  const auto bend = [](const Point<2>& x) -> Point<2> {
-    return {x[0], x[1] + 0.1 * std::sin(3 * x[0]) * x[1] * (1 - x[1])};
-  };
-  const bool matches = seed % 3 != 2;
-  mesh::MeshData<2> data =
-      side_by_side(mapped(box<2>({inner, 0}, {0.6, 1}, {n, n}), bend),
-                   mapped(box<2>({0.6, 0}, {1, 1}, {n, matches ? n : 3}), bend), "_outer");
-  data.interfaces.push_back({{{{"right"}, {"left_outer"}}}});
-  const std::array<problem::ContactLaw, 3> laws = {Frictionless(), Tresca(0.005), Tied()};
-  const problem::ContactLaw& law = laws[matches ? seed / 2 % 3 : seed / 2 % 2];
-  ProblemData<2> of{.boundaries = {loaded<2>("right_outer", random.linear(0.03), random.linear(0.01)),
-                                   loaded<2>("top", random.linear(0.01), -0.02),
-                                   fixed<2>("bottom", free, 0.0), fixed<2>("bottom_outer", free, 0.0)},
-                    .material = lame(1, 0.3)};
-  of.pairs = {pair<2>("right", "left_outer", law)};
-  if (!std::holds_alternative<Tied>(law))
-    of.pairs[0].contact.gap = problem::Field(random.between(-0.03, -0.01));
-  return {renumbered(std::move(data), seed), of, {.degree = p, .newton = {.tolerance = 1e-11}}};
-}
-
 TEST(EnergyMeridian, IsABoundOfTwoBodies)
 {
   for (unsigned seed = 0; seed < n_cases(18); ++seed)

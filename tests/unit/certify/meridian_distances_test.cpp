@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <vector>
@@ -13,6 +15,8 @@
 #include "tribound/base/norm.h"
 #include "tribound/certify/equilibrate/meridian_fields.h"
 #include "tribound/contact/nitsche/elasticity.h"
+#include "tribound/fem/polynomials.h"
+#include "tribound/fem/quadrature.h"
 #include "unit/certify/weak_symmetry_testing.h"
 
 namespace tribound::test
@@ -21,13 +25,14 @@ namespace tribound::test
 namespace
 {
 
-/// u_r = a r + b r z + c r^2, u_z = d z + e r^2 + k z^2 (p = 1: b = c = e = k = 0) with its body force.
+/// u_r = a r + b r z + c r^2, u_z = d z + e r^2 + k z^2 (p = 1: b = c = e = k = 0) with its body force, and
+/// beside it an initial stress s I + m r (e_r x e_r + 2 e_t x e_t), s linear.
 class ExactStress
 {
  public:
-  ExactStress(Axis axis, int degree, const problem::Material& material)
+  ExactStress(Axis axis, int degree, const problem::Material& material, bool is_stressed)
       : quadratic_(degree > 1 ? 1 : 0),
-        problem_(skew_mesh(axis, 3), data(material), {.degree = degree}),
+        problem_(skew_mesh(axis, 3), data(material, is_stressed), {.degree = degree}),
         fields_(problem_.form),
         u_(interpolate<2>(problem_.space, [&](const Point<2>& x) { return displacement(x); }))
   {
@@ -37,12 +42,18 @@ class ExactStress
     stress.dis.assign(problem_.mesh.n_owned_cells() * stress.block_size(), 0.0);
     for (Index k = 0; k < problem_.mesh.n_owned_cells(); ++k)
     {
-      const auto exact = fields_.stress(k, certify::make_sorted_cell(problem_.mesh, k), u_);
+      const certify::SortedCell<2> cell = certify::make_sorted_cell(problem_.mesh, k);
+      const auto exact = fields_.stress(k, cell, u_);
       for (int r = 0; r < 2; ++r)
         for (int c = 0; c < 2; ++c)
-          std::ranges::copy(
-              exact.plane[r][c],
-              &stress.dis[k * stress.block_size() + static_cast<std::size_t>((2 * r + c) * stress.n)]);
+        {
+          const auto tau =
+              std::span(stress.dis)
+                  .subspan(k * stress.block_size() + static_cast<std::size_t>((2 * r + c) * stress.n),
+                           static_cast<std::size_t>(stress.n));
+          std::ranges::copy(exact.plane[r][c], tau.begin());
+          if (is_stressed) add_initial_stress(cell, r, c, tau);
+        }
     }
   }
 
@@ -55,6 +66,13 @@ class ExactStress
   {
     return tribound::inner_product(contact::apply_stiffness<2>(problem_.problem, problem_.space, x), y);
   }
+  /// (sigma_0, eps(x))
+  [[nodiscard]] double initial_work(std::span<const double> x) const
+  {
+    std::vector<double> forces(x.size(), 0.0);
+    contact::add_initial_stress<2>(form().data(), problem_.space, forces);
+    return -tribound::inner_product(forces, x);
+  }
 
  private:
   [[nodiscard]] Point<2> displacement(const Point<2>& x) const
@@ -64,15 +82,38 @@ class ExactStress
     return {0.3 * r + quadratic_ * (0.2 * r * z - 0.4 * r * r),
             -0.1 * z + quadratic_ * (0.5 * r * r + 0.3 * z * z)};
   }
-  [[nodiscard]] ProblemData<2> data(const problem::Material& material) const
+  /// r times the entry, by moments on the basis of the stress.
+  void add_initial_stress(const certify::SortedCell<2>& cell, int row, int column,
+                          std::span<double> tau) const
+  {
+    const fem::Quadrature<2> rule = fem::quadrature<2>(stress_.degree + 2);
+    std::vector<double> phi(tau.size());
+    for (int q = 0; q < rule.size(); ++q)
+    {
+      const Point<2> x = cell.origin + cell.jacobian * rule.points[q];
+      fem::orthonormal_values<2>(stress_.degree, rule.points[q], phi);
+      const double value = x[0] * problem_.problem.initial_stress(0, x)(row, column);
+      for (std::size_t j = 0; j < phi.size(); ++j)
+        tau[j] += rule.weights[q] * std::sqrt(cell.det) * value * phi[j];
+    }
+  }
+  [[nodiscard]] ProblemData<2> data(const problem::Material& material, bool is_stressed) const
   {
     const double mu = material.mu;
     const double lambda = material.lambda;
-    return {.boundaries = {obstacle<2>("bottom")},
-            .material = material,
-            .body_force = {problem::Field(quadratic_ * 0.4 * (3 * lambda + 6 * mu)),
-                           problem::Field(-quadratic_ * (lambda * (2 * 0.2 + 2 * 0.3) +
-                                                         mu * (2 * 0.2 + 4 * 0.5 + 4 * 0.3)))}};
+    const double initial = is_stressed ? 1 : 0;
+    const std::array<problem::Field, 2> force = {
+        problem::Field(quadratic_ * 0.4 * (3 * lambda + 6 * mu) - initial * 0.2),
+        problem::Field(-quadratic_ * (lambda * (2 * 0.2 + 2 * 0.3) + mu * (2 * 0.2 + 4 * 0.5 + 4 * 0.3)) +
+                       initial * 0.1)};
+    problem::Region<2> region{.name = "box", .material = material, .body_force = force};
+    if (is_stressed)
+    {
+      region.initial_stress[0] = formula("0.3 + (0.2 + 0.25)*x - 0.1*y");
+      region.initial_stress[1] = formula("0.3 + 0.2*x - 0.1*y");
+      region.initial_stress_zz = formula("0.3 + (0.2 + 2*0.25)*x - 0.1*y");
+    }
+    return {.boundaries = {obstacle<2>("bottom")}, .regions = {region}};
   }
 
   double quadratic_;
@@ -90,15 +131,16 @@ double total(const std::vector<double>& of_cells)
 class MeridianDistances : public ::testing::TestWithParam<std::tuple<Axis, int>>
 {
  protected:
-  /// check(exact) for materials up to nearly incompressible ones.
+  /// check(exact) for materials up to nearly incompressible ones, with an initial stress and without.
   template <class Check>
   static void check_all(const Check& check)
   {
     for (const double nu : {0.0, 0.3, 0.49})
-    {
-      SCOPED_TRACE(nu);
-      check(ExactStress(std::get<0>(GetParam()), std::get<1>(GetParam()), lame(1, nu)));
-    }
+      for (const bool is_stressed : {false, true})
+      {
+        SCOPED_TRACE(::testing::Message() << nu << (is_stressed ? ", initial stress" : ""));
+        check(ExactStress(std::get<0>(GetParam()), std::get<1>(GetParam()), lame(1, nu), is_stressed));
+      }
   }
 };
 
@@ -136,7 +178,7 @@ TEST_P(MeridianDistances, AreThoseOfProducts)
         EXPECT_NEAR(total(distances.to_discrete),
                     total(distances.square) / 4 - 2 * total(products.centre) + square, 1e-11 * square);
         // the weak form: tau has the tractions and the loads of sigma(u)
-        EXPECT_NEAR(total(products.work), exact.work(exact.u(), c), 1e-11 * square);
+        EXPECT_NEAR(total(products.work), exact.work(exact.u(), c) + exact.initial_work(c), 1e-11 * square);
         EXPECT_LE(total(products.doubt), 1e-12 * square);
       });
 }
@@ -146,6 +188,7 @@ TEST_P(MeridianDistances, DualStressesCarryLoadsToo)
   check_all(
       [](const ExactStress& exact)
       {
+        if (exact.form().problem().has_initial_stress()) return;  // dual problems have none
         const std::vector<double> v = sum(exact.u(), 1, exact.any(5));
         const auto distances = certify::meridian_distances(exact.form(), exact.stress(), exact.u(), v);
         certify::DualPair<2> pair{.z = v, .stress = exact.stress(), .target = v, .form = &exact.form()};

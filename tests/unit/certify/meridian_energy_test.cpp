@@ -1,19 +1,21 @@
 /// @file meridian_energy_test.cpp
 /// Parts of the energy bound of bodies of revolution: motions, tractions, contact terms, oscillation.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tribound/base/dense_factors.h"
 #include "tribound/certify/energy/balanced_traction.h"
 #include "tribound/certify/energy/meridian_oscillation.h"
 #include "tribound/fem/evaluation.h"
+#include "tribound/fem/polynomials.h"
 #include "tribound/fem/quadrature.h"
 #include "unit/certify/meridian_testing.h"
 
@@ -238,6 +240,37 @@ certify::LoadOscillation oscillation(Axis axis, int p, const ProblemData<2>& dat
   return certify::load_oscillation<2>(c.form, any_displacement(c, 1), HUGE_VAL);
 }
 
+/// With sigma_0 = s (e_r x e_r + e_r x e_z + e_z x e_r + 2 e_t x e_t).
+ProblemData<2> stressed(const std::string& s)
+{
+  problem::Region<2> region{.name = "box", .material = lame(1, 0.3)};
+  region.initial_stress[0] = region.initial_stress[2] = formula(s);
+  region.initial_stress_zz = formula(fmt::format("2*({})", s));
+  return {.boundaries = {fixed<2>("bottom", free, 0.0)}, .regions = {region}};
+}
+
+/// ||r^{1/2} (f - Pi^p f)||^2 on a cell.
+double square_beyond(const MeridianProblem& c, Index cell, const std::string& text)
+{
+  const problem::Field f = formula(text);
+  const fem::Quadrature<2> rule = fem::quadrature<2>(20);
+  const mesh::CellMap<2> map = mesh::cell_map(c.mesh, cell);
+  const int n = fem::polynomial_dimension(2, c.space.degree());
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd theta(n);
+  const auto set_theta = [&](int q)
+  {
+    fem::orthonormal_values<2>(c.space.degree(), rule.points[q], std::span(theta.data(), theta.size()));
+    return f(map(rule.points[q]));
+  };
+  for (int q = 0; q < rule.size(); ++q) moments += rule.weights[q] * set_theta(q) * theta;
+  double square = 0;
+  for (int q = 0; q < rule.size(); ++q)
+    square +=
+        map.det * rule.weights[q] * map(rule.points[q])[0] * std::pow(set_theta(q) - theta.dot(moments), 2);
+  return square;
+}
+
 TEST_P(MeridianTractions, NothingIsLostOfPolynomials)
 {
   const int p = degree();
@@ -251,6 +284,31 @@ TEST_P(MeridianTractions, NothingIsLostOfPolynomials)
   EXPECT_EQ(result.reason, "");
   EXPECT_EQ(*std::ranges::max_element(result.cells), 0);
   EXPECT_EQ(result.missed, 0);
+  const certify::LoadOscillation of_initial = oscillation(axis(), p, stressed(fmt::format("0.1*x^{}", p)));
+  EXPECT_EQ(of_initial.reason, "");
+  EXPECT_LE(*std::ranges::max_element(of_initial.cells), 1e-14);
+  EXPECT_EQ(of_initial.missed, 0);
+}
+
+TEST_P(MeridianTractions, OscillationOfTheInitialStressIsBounded)
+{
+  const int p = degree();
+  for (const std::string& shape :
+       {fmt::format("x^{}", p + 1), fmt::format("y^{}", p + 2), std::string("exp(x - 2*y)")})
+  {
+    const MeridianProblem c(skew_mesh(axis(), 3), stressed(shape), {.degree = p});
+    const certify::LoadOscillation found =
+        certify::load_oscillation<2>(c.form, any_displacement(c, 1), HUGE_VAL);
+    EXPECT_EQ(found.reason, "");
+    for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
+    {
+      constexpr double entries = 1 + 2 + 4;  // rr, rz and zr, the hoop entry
+      const double lost =
+          std::sqrt(entries * square_beyond(c, cell, shape) / certify::least_stiffness<2>(c.form, cell));
+      EXPECT_GE(found.cells[cell], lost * (1 - 1e-9)) << shape;
+      EXPECT_LE(found.cells[cell], 3 * lost + 1e-14) << shape;
+    }
+  }
 }
 
 TEST_P(MeridianTractions, WhatIsLostHasAReasonOrABound)

@@ -49,8 +49,8 @@ class MeridianCellStresses
     return {c, make_sorted_cell(mesh, c), solver_.metric(c, form_.problem().material(mesh.region(c)))};
   }
 
-  /// r times the stress of a displacement, on the cell or on its pieces.
-  [[nodiscard]] MeridianStress on_cell(const Cell& cell, std::span<const double> w) const
+  /// r C eps(w), on the cell.
+  [[nodiscard]] MeridianStress elastic(const Cell& cell, std::span<const double> w) const
   {
     const MeridianFields::WeightedStress stress = fields_.stress(cell.number, cell.sorted, w);
     MeridianStress result(stress.hoop.size(), 4);
@@ -58,15 +58,30 @@ class MeridianCellStresses
         stress.hoop;
     return result;
   }
-  [[nodiscard]] MeridianStress on_pieces(const Cell& cell, std::span<const double> w) const
+  /// r times sigma(w), on the cell: C eps(w) + Pi^p sigma_0.
+  [[nodiscard]] MeridianStress total(const Cell& cell, std::span<const double> w) const
   {
-    return solver_.on_pieces(on_cell(cell, w));
+    const MeridianReference& reference = fields_.reference();
+    MeridianStress result = MeridianStress::Zero(reference.n_stress, 4);
+    result.topRows(reference.n_divergence) = elastic(cell, w);
+    if (!fields_.has_initial_stress(cell.number)) return result;
+    const Eigen::MatrixXd times_r = fields_.times_radius(fields_.radii(cell.sorted));
+    const std::array<Eigen::VectorXd, 4> initial = fields_.initial_stress(cell.number, cell.sorted);
+    constexpr std::array<double, 4> sizes = {1, 1, M_SQRT2, 1};
+    for (int i = 0; i < 4; ++i)
+      result.col(i) += sizes[i] * (times_r * initial[i].head(reference.n_divergence));
+    return result;
+  }
+  [[nodiscard]] MeridianStress on_pieces(const MeridianStress& on_cell) const
+  {
+    return solver_.on_pieces(on_cell);
   }
 
   /// The admissible stress with the tractions and the divergence of tau_h and vartheta_h = div tau_{h,r} + r
-  /// f~_r that is nearest to that of w; r f~_r is given by `loads`.
+  /// f~_r that is nearest to the target, which is one on the cell; r f~_r is given by `loads`.
   [[nodiscard]] AdmissibleMeridianStress nearest(const Cell& cell, std::span<const double> tau_h,
-                                                 const MeridianFields& loads, std::span<const double> w) const
+                                                 const MeridianFields& loads,
+                                                 const MeridianStress& target) const
   {
     const MeridianReference& reference = fields_.reference();
     const int n = reference.n_stress;
@@ -77,7 +92,7 @@ class MeridianCellStresses
                       (reference.derivative[l] * Eigen::Map<const Eigen::VectorXd>(&tau_h[k * n], n));
     const Eigen::VectorXd r_vartheta_h = fields_.times_radius(fields_.radii(cell.sorted)) * vartheta_h;
     AdmissibleMeridianStress result =
-        solver_.solve(cell.number, cell.sorted, cell.metric, tau_h, r_vartheta_h, on_cell(cell, w));
+        solver_.solve(cell.number, cell.sorted, cell.metric, tau_h, r_vartheta_h, target);
     if (const double size = norm(tau_h); size > 0) result.unbalanced /= size;
     return result;
   }
@@ -116,11 +131,11 @@ CellDistances meridian_distances(const contact::NitscheForm<2>& form, const Stre
       [&](const MeridianCellStresses::Cell& cell)
       {
         const AdmissibleMeridianStress tau =
-            cells.nearest(cell, stress.dis_in(cell.number), cells.loads(), v);
-        const MeridianStress of_c = cells.on_pieces(cell, c);
+            cells.nearest(cell, stress.dis_in(cell.number), cells.loads(), cells.total(cell, v));
+        const MeridianStress of_c = cells.on_pieces(cells.elastic(cell, c));
         result.square[cell.number] = cell.metric.square(tau.difference);
         result.correction[cell.number] = cell.metric.square(of_c);
-        // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - sigma(c)
+        // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - C eps(c)
         result.to_discrete[cell.number] = cell.metric.square(0.5 * tau.difference - of_c);
         return tau.unbalanced;
       });
@@ -140,15 +155,17 @@ DualProducts meridian_products(const contact::NitscheForm<2>& form, const Stress
       {
         const Index k = cell.number;
         const MeridianMetric& metric = cell.metric;
-        const MeridianStress error = cells.nearest(cell, stress.dis_in(k), cells.loads(), v).difference;
-        const MeridianStress tau = cells.on_pieces(cell, v) + error;
-        const MeridianStress of_z = cells.on_pieces(cell, pair.z);
+        const MeridianStress of_v = cells.total(cell, v);
+        const MeridianStress error = cells.nearest(cell, stress.dis_in(k), cells.loads(), of_v).difference;
+        const MeridianStress tau = cells.on_pieces(of_v) + error;
+        const MeridianStress of_z = cells.on_pieces(cells.elastic(cell, pair.z));
         MeridianStress zeta = MeridianStress::Zero(of_z.rows(), 4);
         double unbalanced = 0;
         if (pair.stress)
         {
-          const auto nearest = cells.nearest(cell, pair.stress->dis_in(k), *dual_loads, pair.target);
-          zeta = cells.on_pieces(cell, pair.target) + nearest.difference;
+          const MeridianStress target = cells.elastic(cell, pair.target);  // without initial stress
+          const auto nearest = cells.nearest(cell, pair.stress->dis_in(k), *dual_loads, target);
+          zeta = cells.on_pieces(target) + nearest.difference;
           unbalanced = nearest.unbalanced;
         }
         const MeridianStress mean = 0.5 * (zeta + of_z);

@@ -74,7 +74,8 @@ class EdgeForces
   void subtract_stress(Index c, std::span<const double> u)
   {
     const SortedCell<2> sorted = make_sorted_cell(mesh_, c);
-    const MeridianFields::WeightedStress stress = fields_.stress(c, sorted, u);
+    MeridianFields::WeightedStress stress = fields_.stress(c, sorted, u);
+    fields_.add_initial_stress(c, sorted, stress);
     const Eigen::Index m = stress.hoop.size();
     const auto integral = [&](const Eigen::VectorXd& field, int vertex)  // of psi_a times it
     { return std::sqrt(sorted.det / 2) * fields_.reference().hat[vertex].col(0).head(m).dot(field); };

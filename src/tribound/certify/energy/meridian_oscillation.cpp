@@ -195,6 +195,22 @@ double spring_loss(const contact::NitscheForm<2>& form, const contact::SpringFac
   return std::sqrt(squares);
 }
 
+/// ||r^{1/2} (sigma_0 - Pi^p sigma_0)||: the functions of degree p + 1 among its moments and what these leave
+/// out.
+double initial_oscillation(const contact::NitscheForm<2>& form, Index cell)
+{
+  const contact::InitialStress<2>& initial = form.data().initial_stress();
+  const std::span<const Tensor<2>> plane = initial.coefficients(cell);
+  const std::span<const double> hoop = initial.hoop_coefficients(cell);
+  double square = 0;
+  for (auto j = static_cast<std::size_t>(fem::polynomial_dimension(2, form.space().degree()));
+       j < plane.size(); ++j)
+    square += plane[j].squaredNorm() + hoop[j] * hoop[j];
+  const double norm = std::sqrt(square * mesh::cell_map(form.space().mesh(), cell).det);
+  return std::sqrt(problem::largest_weight<2>(form.problem(), vertices_of(form, cell))) *
+         initial.remainder(cell).added_to(norm);
+}
+
 /// Adds those of tractions, and what quadrature may miss of them.
 void add_tractions(const contact::NitscheForm<2>& form, std::span<const double> u, std::span<double> missed,
                    LoadOscillation& result)
@@ -247,7 +263,11 @@ LoadOscillation meridian_load_oscillation(const contact::NitscheForm<2>& form, s
   LoadOscillation result{.cells = std::vector<double>(n_cells, 0.0)};
   std::vector<double> missed(n_cells, 0.0);
   const BodyOscillation of_body(form);
-  parallel_for(result.cells.size(), [&](std::size_t c) { result.cells[c] = of_body(static_cast<Index>(c)); });
+  parallel_for(result.cells.size(),
+               [&](std::size_t c) {
+                 result.cells[c] =
+                     of_body(static_cast<Index>(c)) + initial_oscillation(form, static_cast<Index>(c));
+               });
   for (Index c = 0; c < n_cells; ++c)
     missed[c] =
         problem::largest_weight<2>(form.problem(), vertices_of(form, c)) * form.data().body_remainder(c).mean;

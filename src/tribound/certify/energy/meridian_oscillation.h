@@ -15,9 +15,10 @@ namespace tribound::certify
 /// of mean 0 on the triangle with these vertices (r, z), r >= 0.
 [[nodiscard]] double axial_constant(std::array<Point<2>, 3> vertices);
 
-/// load_oscillation() for rho = r (f - f~), f~ of MeridianFields::load(), and r (g_N - Pi g_N), Pi the
-/// projection onto P^p with the weight r. On cells that touch the axis what springs lose counts with their
-/// own energy: the squares of ||w||_en,T contain (r K w, w) on facets of T.
+/// load_oscillation() for rho = r (f - f~), f~ of MeridianFields::load(), r (g_N - Pi g_N), Pi the projection
+/// onto P^p with the weight r, and r (sigma_0 - Pi^p sigma_0) without it, with the entry around the axis. On
+/// cells that touch the axis what springs lose counts with their own energy: the squares of ||w||_en,T
+/// contain (r K w, w) on facets of T.
 [[nodiscard]] LoadOscillation meridian_load_oscillation(const contact::NitscheForm<2>& form,
                                                         std::span<const double> u, double korn);
 

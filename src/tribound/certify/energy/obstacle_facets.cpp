@@ -30,23 +30,11 @@ Index node_at(const fem::LagrangeSpace<dim>& space, const mesh::BoundaryFacet& f
   return -1;
 }
 
-/// What the bound has not yet for bodies of revolution.
-template <int dim>
-std::string meridian_unfit(const contact::NitscheForm<dim>& form)
-{
-  const problem::Problem<dim>& problem = form.problem();
-  if (!problem.is_axisymmetric()) return {};
-  if (std::ranges::any_of(problem.regions(), &problem::Region<dim>::has_initial_stress))
-    return "bodies of revolution have an initial stress or a temperature";
-  return {};
-}
-
 }  // namespace
 
 template <int dim>
 std::string laws_unfit(const contact::NitscheForm<dim>& form)
 {
-  if (std::string unfit = meridian_unfit(form); !unfit.empty()) return unfit;
   const Ranks& ranks = form.space().mesh().ranks();
   const auto any = [&](const auto& what) { return ranks.any(std::ranges::any_of(form.segments(), what)); };
   using Segment = contact::ContactSegment<dim>;

@@ -24,6 +24,17 @@ Eigen::VectorXd orthonormal_basis_at(int degree, const Point<k>& x)
   return values;
 }
 
+/// By columns the functions of the orthonormal basis in a cell's own coordinates, by that in sorted ones.
+PermutedTables coordinates_sorted(int degree)
+{
+  const fem::Quadrature<2> rule = fem::quadrature<2>(2 * degree);
+  PermutedTables tables = tabulate_permuted(degree, rule);
+  const Eigen::MatrixXd own =
+      Eigen::Map<const Eigen::VectorXd>(rule.weights.data(), rule.size()).asDiagonal() * tables.front();
+  for (Eigen::MatrixXd& table : tables) table = (table.transpose() * own).eval();
+  return tables;
+}
+
 }  // namespace
 
 MeridianReference::MeridianReference(int p)
@@ -81,8 +92,7 @@ MeridianFields::MeridianFields(const contact::NitscheForm<2>& form)
       stress_rule_(fem::quadrature<2>(2 * form.space().degree())),
       stress_phi_(tabulate_permuted(form.space().degree(), stress_rule_)),
       stress_tabulation_(form.space().basis().tabulate(stress_rule_.points)),
-      initial_rule_(fem::quadrature<2>(2 * form.space().degree() + 2)),
-      initial_phi_(tabulate_permuted(form.space().degree(), initial_rule_)),
+      to_sorted_(coordinates_sorted(form.space().degree() + 1)),
       body_phi_(tabulate_permuted(form.space().degree(), form.data().cell_rule()))
 {
 }
@@ -113,35 +123,39 @@ auto MeridianFields::stress(Index c, const SortedCell<2>& cell, std::span<const 
   return result;
 }
 
-void MeridianFields::add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const
+std::array<Eigen::VectorXd, 4> MeridianFields::initial_stress(Index c, const SortedCell<2>& cell) const
 {
   const contact::InitialStress<2>& initial = form_.data().initial_stress();
-  if (!initial.acts_on(c)) return;
   const std::span<const Tensor<2>> plane = initial.coefficients(c);
   const std::span<const double> hoop = initial.hoop_coefficients(c);
-  const mesh::CellMap<2> map = mesh::cell_map(form_.space().mesh(), c);
-  const Eigen::MatrixXd& phi = initial_phi_[permutation_number(cell.local)];
-  std::array<std::array<Eigen::VectorXd, 2>, 2> moments;
-  for (auto& row : moments) row.fill(Eigen::VectorXd::Zero(phi.cols()));
-  for (int i = 0; i < initial_rule_.size(); ++i)
+  const Eigen::MatrixXd& to_sorted = to_sorted_[permutation_number(cell.local)];
+  std::array<Eigen::VectorXd, 4> result;
+  result.fill(Eigen::VectorXd::Zero(reference_.n_stress));
+  for (std::size_t j = 0; j < plane.size(); ++j)
   {
-    const Eigen::VectorXd theta =
-        orthonormal_basis_at<2>(form_.space().degree() + 1, initial_rule_.points[i]);
-    const Eigen::VectorXd weighted = initial_rule_.weights[i] * std::sqrt(map.det) *
-                                     map(initial_rule_.points[i])[0] * phi.row(i).transpose();
-    for (std::size_t j = 0; j < plane.size(); ++j)
-    {
-      for (int row = 0; row < 2; ++row)
-        for (int k = 0; k < 2; ++k) moments[row][k] += theta[j] * plane[j](row, k) * weighted;
-      stress.hoop += theta[j] * hoop[j] * weighted;
-    }
+    const Eigen::VectorXd column = std::sqrt(cell.det) * to_sorted.col(static_cast<Eigen::Index>(j));
+    result[0] += plane[j](0, 0) * column;
+    result[1] += plane[j](1, 1) * column;
+    result[2] += plane[j](0, 1) * column;
+    result[3] += hoop[j] * column;
   }
+  return result;
+}
+
+void MeridianFields::add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const
+{
+  if (!has_initial_stress(c)) return;
   const std::array<double, 3> r = radii(cell);
-  for (int row = 0; row < 2; ++row)
-  {
-    if (has_edge_on_axis(r)) project_at_axis(r, moments[row]);
-    for (int k = 0; k < 2; ++k) stress.plane[row][k] += moments[row][k];
-  }
+  const Eigen::MatrixXd to_moments = times_radius(r).transpose();
+  std::array<Eigen::VectorXd, 4> moments = initial_stress(c, cell);
+  for (Eigen::VectorXd& component : moments) component = (to_moments * component).eval();
+  if (has_edge_on_axis(r)) project_at_axis(r, std::span(moments).first<3>());
+  const auto& [rr, zz, rz, hoop] = moments;
+  stress.plane[0][0] += rr;
+  stress.plane[1][1] += zz;
+  stress.plane[0][1] += rz;
+  stress.plane[1][0] += rz;
+  stress.hoop += hoop;
 }
 
 std::array<Eigen::VectorXd, 2> MeridianFields::load(Index c, const SortedCell<2>& cell) const

@@ -51,6 +51,9 @@ class MeridianFields
   };
   [[nodiscard]] WeightedStress stress(Index c, const SortedCell<2>& cell, std::span<const double> u) const;
 
+  /// rr, zz, rz and hoop: sigma_0 in P^{p+1}, as the form has its moments; not for cells without.
+  [[nodiscard]] std::array<Eigen::VectorXd, 4> initial_stress(Index c, const SortedCell<2>& cell) const;
+  [[nodiscard]] bool has_initial_stress(Index c) const { return form_.data().initial_stress().acts_on(c); }
   /// Adds r sigma_0 and r sigma_{0,tt} in P^p; on cells with an edge on the axis r times the projection of
   /// sigma_0 onto P^{p-1} with the weight r.
   void add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const;
@@ -75,9 +78,8 @@ class MeridianFields
   fem::Quadrature<2> stress_rule_;
   PermutedTables stress_phi_;             ///< P^p at its points
   fem::Tabulation<2> stress_tabulation_;  ///< the basis of the space there
-  fem::Quadrature<2> initial_rule_;
-  PermutedTables initial_phi_;  ///< P^p at its points
-  PermutedTables body_phi_;     ///< P^p at the points of the rule of the loads
+  PermutedTables to_sorted_;              ///< from coefficients in a cell's own coordinates, in P^q
+  PermutedTables body_phi_;               ///< P^p at the points of the rule of the loads
 };
 
 [[nodiscard]] inline bool has_edge_on_axis(const std::array<double, 3>& r)

@@ -248,9 +248,7 @@ Judgement judge(const problem::Problem<dim>& problem, const fem::LagrangeSpace<d
     StressError of_stress = stress_error<dim>(problem, their_space, theirs.stress, theirs.hoop, space, u);
     judgement.stress =
         judged(problem, their_space.mesh(), std::move(of_stress.cells), bound, of_stress.doubt);
-    const bool has_initial = std::ranges::any_of(
-        problem.regions(), [](const problem::Region<dim>& region) { return region.has_initial_stress(); });
-    if (!has_initial)
+    if (!problem.has_initial_stress())
       judgement.stress->relative =
           relative_interval(judgement.stress->error, judgement.energy_norm, bound, error.doubt);
   }

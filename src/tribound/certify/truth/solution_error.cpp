@@ -142,10 +142,9 @@ StressError stress_squares(const problem::Problem<dim>& problem, const fem::Lagr
   if constexpr (dim == 2)
     if (problem.is_axisymmetric())
       return meridian_stress_squares(problem, space, s, hoop, reference_space, u_ref);
-  const bool has_initial = std::ranges::any_of(
-      problem.regions(), [](const problem::Region<dim>& region) { return region.has_initial_stress(); });
   const int degree = std::max(space.degree(), reference_space.degree());
-  const fem::Quadrature<dim> rule = fem::quadrature<dim>(has_initial ? 2 * degree + 5 : 2 * degree);
+  const fem::Quadrature<dim> rule =
+      fem::quadrature<dim>(problem.has_initial_stress() ? 2 * degree + 5 : 2 * degree);
   CellGradients<dim> reference_gradients(reference_space, u_ref, rule);
   StressError error{.cells = std::vector<double>(space.mesh().n_cells(), 0.0)};
   const auto n_nodes = static_cast<std::size_t>(space.basis().n_nodes());
