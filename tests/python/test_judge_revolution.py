@@ -6,16 +6,21 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tribound as tb
+from numpy.typing import NDArray
 
 from test_judge import AgainstTrueErrors, averaged_stress, fields, random_half
 from true_errors import squared_errors
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+ALPHA = 0.5
 CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
 PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 
@@ -63,7 +68,31 @@ def random_case(random: np.random.Generator) -> dict[str, Any]:
         case["boundary"]["top"] = {"rigid": {"force": [0, -0.3]}}
     elif support == 2:
         case["boundary"]["top"] = {"slider": -0.03}
+    if random.random() < 0.5:
+        slopes = [f"{float(x)!r}" for x in random.uniform(-0.03, 0.03, 10)]
+        form = str(random.choice(["{} + {}*y", "{}*x + {}*exp(y)", "{}*x*y + {}*y*y"]))
+        texts = [form.format(*slopes[k : k + 2]) for k in range(0, 10, 2)]
+        case["load"] = {"temperature": texts[0], "initial_stress": texts[1:]}
+        case["material"]["alpha"] = case["material"]["inner"]["alpha"] = ALPHA
     return case
+
+
+def initial_stress(case: dict[str, Any], E: Floats, nu: float) -> Callable[[Floats, Ints], Floats] | None:
+    """sigma_0 at points (cells, points, 2) in cells with these numbers, E being that of every cell."""
+    if "load" not in case:
+        return None
+    texts = (case["load"]["temperature"], *case["load"]["initial_stress"])
+
+    def at(points: Floats, cells: Ints) -> Floats:
+        names = {"x": points[..., 0], "y": points[..., 1], "exp": np.exp}
+        temperature, rr, zz, rz, hoop = (eval(text, names) for text in texts)
+        thermal = -ALPHA * E[cells, None] / (1 - 2 * nu) * temperature  # 3 lambda + 2 mu = E / (1 - 2 nu)
+        stress = np.zeros((*temperature.shape, 3, 3))
+        stress[..., 0, 0], stress[..., 1, 1], stress[..., 2, 2] = rr + thermal, zz + thermal, hoop + thermal
+        stress[..., 0, 1] = stress[..., 1, 0] = rz
+        return stress
+
+    return at
 
 
 class Guarantee(AgainstTrueErrors):
@@ -89,7 +118,8 @@ class Guarantee(AgainstTrueErrors):
                 of_region = [case["material"].get(name, case["material"]) for name in theirs.mesh.regions]
                 E, nu = (np.array([m[key] for m in of_region])[theirs.mesh.region_of] for key in ("E", "nu"))
                 their_fields = replace(fields(theirs, stress), displacement=moved[theirs.cell_nodes])
-                true = squared_errors(their_fields, fields(finest.level), E, nu, of_revolution=True)
+                true = squared_errors(their_fields, fields(finest.level), E, nu, of_revolution=True,
+                                      initial=initial_stress(case, E, float(nu[0])))
                 for judgement in (wide, narrow):
                     self.assertNotEqual(judgement.status, "no bound", judgement["reason"])
                     self.check_fields(judgement, true, theirs, own)

@@ -4,6 +4,7 @@ Plane problems are those of plane strain. Of a body of revolution the mesh is th
 those over the full circle.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,9 +99,13 @@ def parents(coarse: Floats, fine: Floats) -> Ints:
 
 
 def squared_errors(
-    theirs: Fields, reference: Fields, E: float | Floats, nu: float | Floats, of_revolution: bool = False
+    theirs: Fields, reference: Fields, E: float | Floats, nu: float | Floats, of_revolution: bool = False,
+    initial: Callable[[Floats, Ints], Floats] | None = None,
 ) -> Squares:
-    """||v - u||^2 and ||s - sigma(u)||^2 per cell; E and nu may be those of each of their cells."""
+    """||v - u||^2 and ||s - sigma(u)||^2 per cell; E and nu may be those of each of their cells.
+
+    initial: the initial stress at points (cells, points, d), of which cells of theirs.
+    """
     constants = (E * nu / (1 + nu) / (1 - 2 * nu), E / 2 / (1 + nu))
     lame, mu = (np.broadcast_to(constant, len(theirs.corners)) for constant in constants)
     parent = parents(theirs.corners, reference.corners)
@@ -108,14 +113,15 @@ def squared_errors(
     for first in range(0, len(parent), BATCH):
         cells = slice(first, first + BATCH)
         own = parent[cells]
-        batch = _batch(theirs, reference, cells, own, lame[own], mu[own], of_revolution)
+        batch = _batch(theirs, reference, cells, own, lame[own], mu[own], of_revolution, initial)
         for total, square in zip(squares, batch):
             np.add.at(total, own, square)
     return Squares(squares[0], None if theirs.stress is None else squares[1])
 
 
 def _batch(
-    theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats, of_revolution: bool
+    theirs: Fields, reference: Fields, cells: slice, own: Ints, lame: Floats, mu: Floats, of_revolution: bool,
+    initial: Callable[[Floats, Ints], Floats] | None,
 ) -> list[Floats]:
     """The squares over each of these cells of the reference, which lie in `own` of theirs."""
     corners, outer = reference.corners[cells], theirs.corners[own]
@@ -140,6 +146,8 @@ def _batch(
     if theirs.stress is not None:
         stress = np.einsum("cqn,cnij->cqij", there.values(local), theirs.stress[own][..., TENSOR[d]])
         stress = stress - lame * _trace(strain) - 2 * mu * strain
+        if initial is not None:
+            stress = stress - initial(points, own)
         densities.append(stress * (stress - lame / (d * lame + 2 * mu) * _trace(stress)) / (2 * mu))
     return [(measure * density.sum(axis=(2, 3))).sum(axis=1) for density in densities]
 

@@ -58,7 +58,7 @@ class MeridianCellStresses
         stress.hoop;
     return result;
   }
-  /// r times sigma(w), on the cell: C eps(w) + Pi^p sigma_0.
+  /// r (C eps(w) + Pi^p sigma_0), on the cell.
   [[nodiscard]] MeridianStress total(const Cell& cell, std::span<const double> w) const
   {
     const MeridianReference& reference = fields_.reference();
