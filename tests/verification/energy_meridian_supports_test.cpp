@@ -25,9 +25,6 @@ namespace tribound::test
 namespace
 {
 
-const Point<2> e_r(1, 0);
-const Point<2> e_z(0, 1);
-
 problem::BoundaryCondition<2> springs(const std::string& name, problem::Field normal,
                                       problem::Field tangential, std::array<problem::Field, 2> rest = {})
 {

@@ -175,8 +175,6 @@ TEST(EnergyMeridian, IsABoundWhereDirectionsVary)
 TEST(EnergyMeridian, IntervalsHoldTheValues)
 {
   using problem::QuantityKind;
-  const Point<2> e_r(1, 0);
-  const Point<2> e_z(0, 1);
   for (unsigned seed = 0; seed < n_cases(12); ++seed)
   {
     RandomMeridian random{std::mt19937(seed)};

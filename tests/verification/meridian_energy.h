@@ -22,6 +22,9 @@
 namespace tribound::test
 {
 
+inline const Point<2> e_r(1, 0);
+inline const Point<2> e_z(0, 1);
+
 inline certify::EnergyBound bound_of(const MeridianProblem& c, std::span<const double> u)
 {
   return certify::EnergyEstimator<2>(c.form, c.method.solver)(u);
