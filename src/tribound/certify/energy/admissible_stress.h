@@ -34,8 +34,8 @@ struct AdmissibleStress
 /// alpha follows by Cholesky factorisation from the products of the K_k in the metric of the cell. tau is
 /// admissible for any alpha. If rounding keeps the matrix from being positive definite, alpha is 0 and tau
 /// not the nearest (cells a million times as long as high were not enough). One object per thread: it keeps
-/// the factors for the next stress on the same cell. Compiled for each dimension and degree by
-/// certify/energy/kernel.cpp.in.
+/// the factors for the next stress on a cell with the same metric up to rounding, of which the square feels
+/// the square. Compiled for each dimension and degree by certify/energy/kernel.cpp.in.
 template <int dim, int q>
 class AdmissibleStressSolver
 {
@@ -55,6 +55,8 @@ class AdmissibleStressSolver
   void minimise(const Metric& map, const Metric& compliance, PiecewiseStress<dim, q>& difference);
   /// Factors the products of the functions of the kernel in a metric of tau^; false if rounding prevents it.
   [[nodiscard]] bool factor(const Metric& metric);
+
+  static constexpr double same = 1e-12;  ///< metrics that differ by less, relative to the diagonal
 
   Metric metric_ = Metric::Zero();  ///< that of the factors
   bool is_definite_ = false;

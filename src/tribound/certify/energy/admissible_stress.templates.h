@@ -164,7 +164,8 @@ void AdmissibleStressSolver<dim, q>::minimise(const Metric& map, const Metric& c
 template <int dim, int q>
 bool AdmissibleStressSolver<dim, q>::factor(const Metric& metric)
 {
-  if (metric == metric_) return is_definite_;
+  const SymmetricVector<dim> sizes = metric_.diagonal().cwiseSqrt();
+  if (((metric - metric_).cwiseAbs() - same * sizes * sizes.transpose()).maxCoeff() <= 0) return is_definite_;
   metric_ = metric;
   constexpr int n = AlfeldReference<dim, q>::n_products;
   const auto& products = alfeld_reference<dim, q>().products;

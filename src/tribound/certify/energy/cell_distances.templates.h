@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tribound/base/norm.h"
 #include "tribound/base/parallel.h"
@@ -12,6 +13,7 @@
 #include "tribound/certify/energy/cell_distances.h"
 #include "tribound/certify/equilibrate/cell_operator.h"
 #include "tribound/certify/equilibrate/initial_moments.h"
+#include "tribound/certify/equilibrate/repeated_shapes.h"
 
 namespace tribound::certify
 {
@@ -38,6 +40,10 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
                { return std::ranges::equal(v.subspan(dim * node, dim), known_v.subspan(dim * node, dim)); });
   };
   const InitialMoments<dim, q> initial(form);
+  std::vector<Index> order(n_cells);  // cells of a shape, which share factors, one after the other
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(
+      order, {}, [shapes = classify_shapes(mesh, true).number](Index cell) { return shapes[cell]; });
   const int n_threads = max_threads();
   std::vector<double> unbalanced(n_threads, 0.0);
   const auto on_thread = [&](int thread)
@@ -45,7 +51,7 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
     AdmissibleStressSolver<dim, q> solver;
     for (std::size_t k = n_cells * thread / n_threads; k < n_cells * (thread + 1) / n_threads; ++k)
     {
-      const auto cell = static_cast<Index>(k);
+      const Index cell = order[k];
       if (is_known(cell)) continue;
       const SortedCell<dim> sorted = make_sorted_cell(mesh, cell);
       const problem::Material& material = form.problem().material(mesh.region(cell));
@@ -57,12 +63,12 @@ CellDistances cell_distances(const contact::NitscheForm<dim>& form, const Stress
       const double size = norm(sigma_h);
       if (size > 0) unbalanced[thread] = std::max(unbalanced[thread], tau.unbalanced / size);
       const PiecewiseStress<dim, q> of_c = on_pieces<dim, q>(elastic(c));
-      result.square[k] = tau.square;
-      result.correction[k] = compliance_product(material, of_c, of_c);
+      result.square[cell] = tau.square;
+      result.correction[cell] = compliance_product(material, of_c, of_c);
       PiecewiseStress<dim, q> from_mean;  // (tau + sigma(v))/2 - sigma(u) = (tau - sigma(v))/2 - C eps(c)
       add_multiple(from_mean, 0.5, tau.difference);
       add_multiple(from_mean, -1, of_c);
-      result.to_discrete[k] = compliance_product(material, from_mean, from_mean);
+      result.to_discrete[cell] = compliance_product(material, from_mean, from_mean);
     }
   };
   in_threads(n_threads, on_thread);
