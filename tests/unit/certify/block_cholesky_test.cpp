@@ -16,10 +16,12 @@ namespace
 {
 
 constexpr int size = 3;
+constexpr int large = 13;
 using Edges = std::vector<std::array<int, 2>>;
 
 /// Blocks (i, j) of the edges are random, those on the diagonal dominate. Returns |A x - b| for a random b,
 /// which is also the last of several columns solved for at a time.
+template <int size>
 double largest_defect(int n_blocks, const Edges& edges, certify::BlockCholesky<size>& matrix)
 {
   std::mt19937 generator(n_blocks);
@@ -78,9 +80,8 @@ Edges cycle(int n)
   return edges;
 }
 
-}  // namespace
-
-TEST(BlockCholesky, SolvesOnPathsCyclesAndWheels)
+template <int size>
+void solve_on_graphs()
 {
   certify::BlockCholesky<size> matrix;  // storage is used again
   EXPECT_LE(largest_defect(1, {}, matrix), 1e-14);
@@ -92,6 +93,31 @@ TEST(BlockCholesky, SolvesOnPathsCyclesAndWheels)
     for (int i = 0; i < n; ++i) wheel.push_back({n, i});
     EXPECT_LE(largest_defect(n + 1, wheel, matrix), 1e-13) << n;
   }
+}
+
+}  // namespace
+
+TEST(BlockCholesky, SolvesOnPathsCyclesAndWheels)
+{
+  solve_on_graphs<size>();
+}
+
+TEST(BlockCholesky, SolvesWithLargeBlocks)
+{
+  solve_on_graphs<large>();
+}
+
+/// Two complete graphs of five blocks with a block between one of each: its few neighbours are eliminated
+/// after others of their own graphs.
+TEST(BlockCholesky, LargeBlocksAreOrderedByFill)
+{
+  Edges edges = {{0, 10}, {10, 5}};
+  for (const int first : {0, 5})
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; j < i; ++j) edges.push_back({first + i, first + j});
+  certify::BlockCholesky<large> matrix;
+  EXPECT_LE(largest_defect(11, edges, matrix), 1e-13);
+  EXPECT_EQ(matrix.bytes(), (11 + edges.size()) * sizeof(certify::BlockCholesky<large>::Matrix));
 }
 
 TEST(BlockCholesky, RefusesASingularMatrix)

@@ -66,6 +66,23 @@ TYPED_TEST(SmallDense, TransposedProduct)
     }
 }
 
+TYPED_TEST(SmallDense, GramMatrix)
+{
+  constexpr int n = TypeParam::value;
+  constexpr int k = n + 2;
+  const auto a = random_matrix<k, n>(2);
+  const auto c = random_matrix<n, n>(4);
+  auto result = c;
+  certify::subtract_gram<n, k>(result.data(), a.data(), a.stride);
+  for (int i = 0; i < n; ++i)
+    for (int j = i; j < n; ++j)
+    {
+      double expected = c(i, j);
+      for (int l = 0; l < k; ++l) expected -= a(l, i) * a(l, j);
+      EXPECT_NEAR(result(i, j), expected, 1e-14 * n);
+    }
+}
+
 TYPED_TEST(SmallDense, MatrixTimesVector)
 {
   constexpr int n = TypeParam::value;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -41,13 +42,13 @@ class BlockCholesky
     adjacency_[j * words_ + i / 64] |= std::uint64_t{1} << (i % 64);
   }
 
-  /// Orders by minimum degree and makes room for all blocks, which become 0. Returns the position
+  /// Orders by minimum fill or degree and makes room for all blocks, which become 0. Returns the position
   /// of each block in that order: its new number.
   std::span<const int> order()
   {
     sequence_.clear();
     rank_.assign(n_, -1);
-    for (int step = 0; step < n_; ++step) eliminate_symbolically(least_connected(), step);
+    for (int step = 0; step < n_; ++step) eliminate_symbolically(next(), step);
     collect_rows();
     return rank_;
   }
@@ -116,9 +117,12 @@ class BlockCholesky
       for (int e = begin; e < end; ++e)
         solve_transposed<n, stride>(pivot.data(), stride, reciprocal_[i].data(), pool_[e].data(), stride);
       for (int e = begin; e < end; ++e)
-        for (int f = e; f < end; ++f)
+      {
+        subtract_gram<n, n>(block(columns_[e], columns_[e]).data(), pool_[e].data(), stride);
+        for (int f = e + 1; f < end; ++f)
           subtract_transposed_product<n, stride, n>(block(columns_[e], columns_[f]).data(), stride,
                                                     pool_[e].data(), stride, pool_[f].data(), stride);
+      }
     }
     return true;
   }
@@ -167,18 +171,36 @@ class BlockCholesky
  private:
   static constexpr int stride = Matrix::stride;
 
-  [[nodiscard]] int least_connected() const
+  /// What comes first in the order of elimination, the smallest number next. Large blocks: the pairs of
+  /// neighbours that elimination joins, twice, of equals those with most neighbours, as these need not come
+  /// later. It saves a tenth of the operations, but not the time that it takes where blocks are small.
+  [[nodiscard]] int cost_of_elimination(int i) const
+  {
+    int degree = 0;
+    for (int w = 0; w < words_; ++w) degree += std::popcount(adjacency_[i * words_ + w]);
+    if constexpr (n < 12) return degree;
+    int joined = -degree;  // a neighbour is not its own
+    for_later_neighbours(i,
+                         [&](int j)
+                         {
+                           for (int w = 0; w < words_; ++w)
+                             joined +=
+                                 std::popcount(adjacency_[i * words_ + w] & ~adjacency_[j * words_ + w]);
+                         });
+    return joined * (n_ + 1) - degree;
+  }
+
+  [[nodiscard]] int next() const
   {
     int best = -1;
-    int best_degree = n_ + 1;
+    int least = std::numeric_limits<int>::max();
     for (int i = 0; i < n_; ++i)
     {
       if (rank_[i] >= 0) continue;
-      int degree = 0;
-      for (int w = 0; w < words_; ++w) degree += std::popcount(adjacency_[i * words_ + w]);
-      if (degree >= best_degree) continue;
+      const int cost = cost_of_elimination(i);
+      if (cost >= least) continue;
       best = i;
-      best_degree = degree;
+      least = cost;
     }
     return best;
   }

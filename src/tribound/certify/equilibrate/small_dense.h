@@ -137,6 +137,17 @@ void subtract_transposed_product(double* c, int c_stride, const double* a, int a
                                b + (vectors - rest) * lanes, b_stride);
 }
 
+/// The upper triangle of C -= A^T A with C n x n and A k x n, from column `first` on, a multiple of `lanes`;
+/// below the diagonal C is undefined then.
+template <int n, int k, int first = 0>
+void subtract_gram(double* c, const double* a, int stride)
+{
+  constexpr int vectors = std::min(2, (padded(n) - first) / lanes);
+  constexpr int next = first + vectors * lanes;
+  subtract_strip<std::min(n, next), vectors, k>(c + first, stride, a, stride, a + first, stride);
+  if constexpr (next < n) subtract_gram<n, k, next>(c, a, stride);
+}
+
 /// A = U^T U, U taking the place of the upper triangle of A, the only part that is read. reciprocal[i] = 1 /
 /// U(i, i). False if A is not positive definite. Row by row: what is stored as a vector is not read before
 /// the next row needs it.
@@ -198,15 +209,17 @@ void solve_transposed(const double* u, int u_stride, const double* reciprocal, d
     solve_transposed_strip<n, rest>(u, u_stride, reciprocal, b + (vectors - rest) * lanes, b_stride);
 }
 
-/// x = U^{-T} x.
+/// x = U^{-T} x, column by column of U^T: sums of all entries go on together.
 template <int n>
 void solve_transposed(const double* u, int stride, const double* reciprocal, double* x)
 {
+  DenseVector<n> rest;
+  std::copy_n(x, n, rest.data());
   for (int i = 0; i < n; ++i)
   {
-    double sum = x[i];
-    for (int k = 0; k < i; ++k) sum -= u[k * stride + i] * x[k];
-    x[i] = reciprocal[i] * sum;
+    x[i] = reciprocal[i] * rest[i];
+    for (int j = (i + 1) / lanes * lanes; j < padded(n); j += lanes)
+      lanes_at(rest.data() + j) -= x[i] * lanes_at(u + i * stride + j);
   }
 }
 
@@ -251,12 +264,13 @@ void subtract_product(double* c, int c_stride, const double* a, int a_stride, co
 template <int k, int m>
 void subtract_transposed_times(double* y, const double* a, int stride, const double* x)
 {
-  for (int j = 0; j < m; j += lanes)
-  {
-    Lanes sum = lanes_at(y + j);
-    for (int l = 0; l < k; ++l) sum -= x[l] * lanes_at(a + l * stride + j);
-    lanes_at(y + j) = sum;
-  }
+  constexpr int vectors = m / lanes;
+  constexpr int width = std::min(vectors, 8);
+  constexpr int rest = vectors % width;
+  for (int j = 0; j < (vectors - rest) * lanes; j += width * lanes)
+    subtract_tile<1, width, k>(y + j, 0, x, 1, a + j, stride);
+  if constexpr (rest > 0)
+    subtract_tile<1, rest, k>(y + (vectors - rest) * lanes, 0, x, 1, a + (vectors - rest) * lanes, stride);
 }
 
 /// y -= A x with A k x m; m is a multiple of `lanes`, and what fills up A and x is 0.
