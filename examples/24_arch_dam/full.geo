@@ -1,0 +1,3 @@
+// The dam on a finer mesh.
+h = 8;
+Include "dam.geo";
