@@ -21,8 +21,8 @@ def fitted(rows, joint):
     columns = np.stack([x**a * z**b for a, b in POWERS], axis=1)
     filled = 1e3 * (BEFORE - gap)
     factors = np.linalg.lstsq(columns, filled, rcond=None)[0]
-    terms = [f"{factor:+.3g}" + a * "*x" + b * "*z" for factor, (a, b) in zip(factors, POWERS, strict=True)]
-    return "1e-3*(" + " ".join(terms) + ")", np.abs(columns @ factors - filled).max()
+    terms = [f"{factor:.3g}" + a * "*x" + b * "*z" for factor, (a, b) in zip(factors, POWERS, strict=True)]
+    return f"1e-3*({' + '.join(terms)})".replace("+ -", "- "), np.abs(columns @ factors - filled).max()
 
 
 def main():
@@ -30,7 +30,7 @@ def main():
         rows = list(csv.DictReader(file))
     for joint in range(1, 5):
         formula, distance = fitted(rows, joint)
-        print(f'joints {joint} and {8 - joint}: gap = "t < 1 ? {BEFORE:g} : {formula}", at most {distance:.2f} mm off')
+        print(f'joints {joint} and {8 - joint}: gap = "t == 0 ? {BEFORE:g} : {formula}", at most {distance:.2f} mm off')
 
 
 if __name__ == "__main__":
