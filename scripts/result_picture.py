@@ -76,7 +76,7 @@ class Run:
 class Body:
     """The deformed body with its von Mises stress, as it is drawn."""
 
-    def __init__(self, run, scale, view, window, share):
+    def __init__(self, run, scale, view, window, share, up):
         self.skin = surface(run.body, 2 if len(run.body.nodes) > MANY_CELLS else 4)
         displacement = self.skin.fields["displacement"]
         self.scale = displacement_scale(self.skin.points, displacement) if scale is None else scale
@@ -84,7 +84,7 @@ class Body:
         self.values = self.skin.fields["von_mises"]
         self.camera = None
         if run.body.dimension == 3:
-            up = run.upwards()
+            up = run.upwards() if up is None else np.array(up)
             self.camera = Camera(self.points, diagonal(up) if view is None else view, up)
         flat = self.camera(self.points)[:, :2] if self.camera else self.points[:, :2]
         around = flat if self.camera else np.concatenate([flat, self.skin.points[:, :2]])
@@ -187,7 +187,7 @@ def panels(shapes):
     return figure, parts
 
 
-def draw(directory, file, scale=None, mesh=True, view=None, window=None, share=SHOWN, boundary=None, step=None, chart=None):
+def draw(directory, file, scale=None, mesh=True, view=None, window=None, share=SHOWN, boundary=None, step=None, chart=None, up=None):
     """Draws the result in a directory into a PNG file.
 
     scale     factor of the displacements (default: the largest is about a tenth of the body)
@@ -198,9 +198,10 @@ def draw(directory, file, scale=None, mesh=True, view=None, window=None, share=S
     boundary  3D: whose pressure is drawn (default: that of the largest force)
     step      of load steps: number of the one that is drawn, or HIGHEST, that with the highest t (default: the last)
     chart     over load steps: what is drawn to the right and upwards, each a column of history.csv, words, and their kind of unit
+    up        3D: the direction that is upwards (default: that of the contact force)
     """
     run = Run(directory, step)
-    body = Body(run, scale, view, window, share)
+    body = Body(run, scale, view, window, share, up)
     draw_beside, shape = beside(run, boundary, chart)
     figure, parts = panels([body.shape(), shape][: 1 + (draw_beside is not None)])
     axes = parts[0].subplots()

@@ -166,12 +166,12 @@ For m In {1:8}
   If (m == 1)
     Physical Surface("end_1") = {joint[0]};
   Else
-    Physical Surface(Sprintf("joint_%g.right", m - 1)) = {joint[0]};
+    Physical Surface(Sprintf("joint_%g_right", m - 1)) = {joint[0]};
   EndIf
   If (m == 8)
     Physical Surface("end_8") = {joint[1]};
   Else
-    Physical Surface(Sprintf("joint_%g.left", m)) = {joint[1]};
+    Physical Surface(Sprintf("joint_%g", m)) = {joint[1]};
   EndIf
 EndFor
 Physical Volume("concrete") = concrete[];

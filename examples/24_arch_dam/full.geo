@@ -1,3 +1,3 @@
 // The dam on a finer mesh.
-h = 8;
+h = 9;
 Include "dam.geo";

@@ -16,7 +16,7 @@ POWERS = ((0, 0), (1, 0), (0, 1), (1, 1), (0, 2))  # of x and z in m, for mm
 
 def fitted(rows, joint):
     """The formula for a joint and its mirror image, and the largest distance from it in mm."""
-    names = {f"joint_{joint}.left", f"joint_{8 - joint}.left"}
+    names = {f"joint_{joint}", f"joint_{8 - joint}"}
     x, z, gap = np.array([[float(row[key]) for key in ("x", "z", "gap")] for row in rows if row["boundary"] in names]).T
     columns = np.stack([x**a * z**b for a, b in POWERS], axis=1)
     filled = 1e3 * (BEFORE - gap)
