@@ -105,13 +105,18 @@ def bounds(axes, study):
 def energy_errors(axes, study):
     for name in study.variants("adaptive", "uniform"):
         label, colour = VARIANTS[name]
-        x, y = known(study.column(name, "dofs"), study.column(name, "energy_error"))
+        dofs, error = study.column(name, "dofs"), study.column(name, "energy_error")
+        bound = error * study.column(name, "energy_effectivity")  # unknown where it is one of another problem
+        x, y = known(dofs, bound)
         if x.size:
-            axes.plot(x, y, "-", color=colour, marker="o", markerfacecolor="white", label=label)
+            axes.plot(x, y, "-", color=colour, marker="o", markerfacecolor="white", label=f"{label}: guaranteed bound")
+        x, y = known(dofs, error)
+        if x.size:
+            axes.plot(x, y, "--", color=colour, marker="s", markerfacecolor="white", label=f"{label}: error")
             slope_triangle(axes, x, y, study.rate(name, "error"), colour)
     log_axes(axes, "energy norm")
     axes.set_title("Error in the energy norm")
-    axes.legend()
+    axes.legend(fontsize=7, labelspacing=0.25)
 
 
 def convergence(study):
