@@ -17,6 +17,7 @@
 #include "app/result/judged_steps.h"
 #include "app/result/judgement.h"
 #include "app/shared_file.h"
+#include "tribound/base/sha256.h"
 #include "tribound/io/fields/vtu.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/json.h"
@@ -106,14 +107,15 @@ class Judge
     if (request.steps) targets_ = config.history->program.targets;
     std::vector<GivenNumber> numbers;
     for (const std::string& text : request.numbers) numbers.push_back(parse_number(text, theirs.size()));
+    io::HashedFile file;  // of many steps, if they stand in one
     for (std::size_t i = 0; i < theirs.size(); ++i)
     {
+      if (file.name != theirs[i].file) file = {theirs[i].file, sha256(io::read_text(theirs[i].file))};
       const mesh::ImportedSolution solution = solution_of(request, theirs[i]);
       for (const std::string& text : solution.notes)
         if (!request.quiet && is_first_process()) note(text);
       const std::optional<double> t = targets_.empty() ? std::nullopt : std::optional(targets_[i]);
-      steps_.push_back(
-          std::make_unique<JudgedStep<dim>>(case_, request, theirs[i].file, solution, numbers, i, t));
+      steps_.push_back(std::make_unique<JudgedStep<dim>>(case_, request, file, solution, numbers, i, t));
     }
   }
 

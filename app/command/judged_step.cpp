@@ -54,7 +54,7 @@ JudgedCase<dim>::JudgedCase(const case_file::Config& config, mesh::Mesh<dim> fir
 
 template <int dim>
 JudgedStep<dim>::JudgedStep(const JudgedCase<dim>& judged_case, const JudgeRequest& request,
-                            const std::string& file, const mesh::ImportedSolution& solution,
+                            const io::HashedFile& file, const mesh::ImportedSolution& solution,
                             std::span<const GivenNumber> numbers, std::size_t number,
                             const std::optional<double>& t)
     : case_(judged_case),

@@ -55,7 +55,7 @@ class JudgedStep
   /// `number`: its place in `numbers`; `t`: of its load step, where it is known before the run. Keeps a
   /// reference to the case. Throws InputError where the solution is
   /// on another mesh, and for a number without a quantity.
-  JudgedStep(const JudgedCase<dim>& judged_case, const JudgeRequest& request, const std::string& file,
+  JudgedStep(const JudgedCase<dim>& judged_case, const JudgeRequest& request, const io::HashedFile& file,
              const mesh::ImportedSolution& solution, std::span<const GivenNumber> numbers, std::size_t number,
              const std::optional<double>& t);
 

@@ -40,12 +40,17 @@ RunReport<dim>::RunReport(const case_file::Config& config, const problem::Proble
       slides_(std::move(slides)),
       in_work_(config.output)
 {
-  ranks_.on_first([&] { directory_ = take_directory(config, restart != nullptr); });
+  record_.effective = config.effective;
+  ranks_.on_first(
+      [&]
+      {
+        directory_ = take_directory(config, restart != nullptr);
+        record_.effective.files = io::hashed_files(case_file::files_of(config));
+      });
   record_.facts = case_file::case_facts(config, dim);
   record_.mesh = io::mesh_facts<dim>(problem, first.space, first.form.constraints(), config.units);
   record_.build = io::build_facts();
   record_.build.processes = ranks_.size();
-  record_.effective = config.effective;
   record_.case_file = effective_file_name(config);
   record_.tolerance = config.adapt.tolerance;
   record_.setup = seconds_since(begin);

@@ -69,6 +69,9 @@ class StudyCommand
         stop_(stop_on_signals())
   {
     study_.facts = case_file::case_facts(config, dim);
+    study_.effective = config.effective;
+    study_.effective.files = io::hashed_files(case_file::files_of(config));
+    study_.case_file = effective_file_name(config);
     study_.build = io::build_facts();
     study_.gamma_lin = config.method.stopping.gamma_lin;
     study_.marking = config.adapt.marking.strategy == adapt::Marking::doerfler ? "doerfler" : "maximum";
@@ -231,7 +234,7 @@ class StudyCommand
   /// Writes what is complete so far.
   void write() const
   {
-    io::write_file(config_.output.directory / effective_file_name(config_), config_.effective.text);
+    io::write_file(config_.output.directory / study_.case_file, study_.effective.text);
     io::write_file(config_.output.directory / "study.csv", study_csv(study_));
     io::write_file(config_.output.directory / "study.json", study_json(study_));
     write_page();

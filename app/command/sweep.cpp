@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <thread>
-#include <variant>
+#include <vector>
 
 #include "app/child_process.h"
 #include "app/command/commands.h"
@@ -25,7 +25,7 @@
 #include "tribound/case/sweep_values.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/io/file/output_directory.h"
-#include "tribound/mesh/import/inp.h"
+#include "tribound/io/record/facts.h"
 
 namespace tribound::app
 {
@@ -73,31 +73,25 @@ std::vector<std::string> titles_of(const std::vector<std::string>& keys, const c
   return titles;
 }
 
-/// Hashes each mesh file once for all runs, a deck with the files that it includes. Files that a .geo reads
-/// are not included.
-class MeshHashes
+/// Hashes the files of the runs, the same files once.
+class FileHashes
 {
  public:
-  /// Empty without a file, or where it cannot be read, which the run itself will report.
-  const std::string& operator()(const mesh::MeshSource& source)
+  /// That of the only file of a case, or of the hashes of all; empty without files, or where they cannot be
+  /// read, which the run itself will report.
+  const std::string& operator()(const case_file::Config& config)
   {
-    const auto* file = std::get_if<mesh::MeshFile>(&source);
-    const auto [entry, is_new] = known_.try_emplace(file != nullptr ? file->path : std::filesystem::path{});
-    if (is_new && file != nullptr) entry->second = hash_of(file->path);
+    const std::vector<std::filesystem::path> files = case_file::files_of(config);
+    const auto [entry, is_new] = known_.try_emplace(files);
+    if (!is_new) return entry->second;
+    const std::vector<io::HashedFile> hashed = io::hashed_files(files);
+    for (const io::HashedFile& file : hashed) entry->second += file.sha256;
+    if (hashed.size() > 1) entry->second = sha256(entry->second);
     return entry->second;
   }
 
  private:
-  static std::string hash_of(const std::filesystem::path& file)
-  {
-    const std::string content = io::read_text(file);
-    if (content.empty() || file.extension() != ".inp") return content.empty() ? "" : sha256(content);
-    std::string all;
-    for (const std::filesystem::path& part : mesh::files_of_inp(file)) all += sha256(io::read_text(part));
-    return sha256(all);
-  }
-
-  std::map<std::filesystem::path, std::string> known_;
+  std::map<std::vector<std::filesystem::path>, std::string> known_;
 };
 
 class Sweep
@@ -110,8 +104,8 @@ class Sweep
     const case_file::Config config = case_file::read_config(file, request.overrides);
     directory_ = config.output.directory / "sweep";
     if (config.output.report) page_ = PageTemplate(find_shared_file("report.html"));
-    record_ = {config.title, file, table.keys, {}, titles_of(table.keys, config)};
-    MeshHashes mesh_hash;
+    record_ = {config.title, file, table.keys, {}, titles_of(table.keys, config), config.purpose};
+    FileHashes file_hash;
     for (const auto& values : table.rows)
     {
       SweepRun& run = record_.runs.emplace_back();
@@ -120,7 +114,7 @@ class Sweep
       run.status = "not run";
       const case_file::Config its_config = case_file::read_config(file, overrides(run));
       run.sha256 = sha256(its_config.effective.text);
-      run.mesh_sha256 = mesh_hash(its_config.mesh);
+      run.files_sha256 = file_hash(its_config);
     }
   }
 

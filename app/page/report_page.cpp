@@ -51,7 +51,7 @@ io::Json tables_json(const io::RunRecord& run, const std::string& contact)
 /// The effective case with its text.
 io::Json case_json(const io::RunRecord& run)
 {
-  io::Json object = io::effective_case_json(run);
+  io::Json object = io::effective_case_json(run.effective, run.case_file);
   if (!object.is_null()) object["text"] = run.effective.text;
   return object;
 }

@@ -131,7 +131,7 @@ std::size_t worst_step(std::span<const JudgementRecord> steps)
 std::string judged_steps_text(std::span<const JudgementRecord> steps, const std::string& directory)
 {
   const JudgementRecord& last = steps.back();
-  return line("theirs", fmt::format("{}, of the last step: {}", last.solution, last.description)) +
+  return line("theirs", fmt::format("{}, of the last step: {}", last.solution.name, last.description)) +
          table_text(steps) +
          sentences(steps, [](const JudgementRecord& step)
                    { return step.judgement ? "against " + step.target : "not bounded: " + step.reason; }) +
@@ -150,15 +150,11 @@ std::string judged_steps_text(std::span<const JudgementRecord> steps, const std:
 io::Json judged_steps_object(std::span<const JudgementRecord> steps)
 {
   const JudgementRecord& last = steps.back();
-  io::Json object{{"schema", judgement_schema},
-                  {"title", last.facts.title},
-                  {"file", last.facts.file},
-                  {"units", io::units_json(last.facts)},
-                  {"status", common_status(steps)},
-                  {"sharpness", last.sharpness},
-                  {"accept", io::number_or_null(last.accept)},
-                  {"worst", worst_step(steps) + 1},
-                  {"steps", io::Json::array()}};
+  io::Json object{{"schema", judgement_schema},          {"title", last.facts.title},
+                  {"purpose", last.facts.purpose},       {"file", last.facts.file},
+                  {"units", io::units_json(last.facts)}, {"status", common_status(steps)},
+                  {"sharpness", last.sharpness},         {"accept", io::number_or_null(last.accept)},
+                  {"worst", worst_step(steps) + 1},      {"steps", io::Json::array()}};
   for (const JudgementRecord& step : steps) object["steps"].push_back(judgement_object(step));
   return object;
 }

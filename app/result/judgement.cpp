@@ -187,7 +187,7 @@ std::string why_wide(const JudgementRecord& record)
 std::string judgement_text(const JudgementRecord& r, const std::string& directory)
 {
   std::string text =
-      line("theirs", fmt::format("{}: {}", r.solution, r.description)) +
+      line("theirs", fmt::format("{}: {}", r.solution.name, r.description)) +
       paragraph("read as",
                 fmt::format("{}; {} of the case's mesh, nodes {} their places", r.read_as,
                             count(r.their_cells, "cell", "cells"),
@@ -236,13 +236,18 @@ io::Json judgement_object(const JudgementRecord& r)
   io::Json object{
       {"schema", judgement_schema},
       {"title", r.facts.title},
+      {"purpose", r.facts.purpose},
       {"file", r.facts.file},
       {"model", io::model_json(r.facts)},
       {"d", r.facts.dimension},
       {"p", r.facts.degree},
       {"friction", r.facts.friction},
       {"units", io::units_json(r.facts)},
-      {"solution", {{"file", r.solution}, {"description", r.description}, {"cells", r.their_cells}}},
+      {"solution",
+       {{"file", r.solution.name},
+        {"sha256", r.solution.sha256},
+        {"description", r.description},
+        {"cells", r.their_cells}}},
       {"read_as", r.read_as},
       {"node_distance", r.node_distance},
       {"curved_distance", r.curved_distance},

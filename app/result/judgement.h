@@ -44,7 +44,7 @@ struct JudgedForce
 struct JudgementRecord
 {
   io::CaseFacts facts{};
-  std::string solution{};     ///< the file
+  io::HashedFile solution{};  ///< the file
   std::string description{};  ///< what it is
   std::string read_as{};
   double node_distance = 0;

@@ -63,6 +63,8 @@ struct StudyReference
 struct Study
 {
   io::CaseFacts facts;
+  io::EffectiveCase effective;
+  std::string case_file = "case.toml";  ///< its name in the output directory
   io::BuildFacts build;
   double gamma_lin = 0;
   std::string marking;

@@ -205,7 +205,7 @@ std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
     const auto run = std::ranges::find(sweep.runs, name, &SweepRun::name);
     const std::optional<double> code = number_at(old, "/exit_code");
     if (run == sweep.runs.end() || !code || text_at(old, "/sha256") != run->sha256 ||
-        text_at(old, "/mesh_sha256") != run->mesh_sha256)
+        text_at(old, "/files_sha256") != run->files_sha256)
       continue;
     const io::Json certificate = certificate_of(directory / name, *run);
     const bool complete_before = is_final(certificate, static_cast<int>(*code)) &&
@@ -238,8 +238,9 @@ std::string sweep_csv(const SweepRecord& sweep)
 io::Json sweep_object(const SweepRecord& sweep)
 {
   io::Json object{{"schema", sweep_schema}, {"program", io::program_json(io::build_facts())},
-                  {"title", sweep.title},   {"file", sweep.file},
-                  {"keys", sweep.keys},     {"titles", sweep.titles}};
+                  {"title", sweep.title},   {"purpose", sweep.purpose},
+                  {"file", sweep.file},     {"keys", sweep.keys},
+                  {"titles", sweep.titles}};
   const auto named = std::ranges::find_if(sweep.runs, [](const SweepRun& run) { return !run.units.empty(); });
   object["units"] = named == sweep.runs.end() ? io::Json(nullptr) : io::Json::parse(named->units);
   object["runs"] = io::Json::array();
@@ -248,7 +249,7 @@ io::Json sweep_object(const SweepRecord& sweep)
     io::Json row{{"run", run.name}, {"values", io::Json::object()}};
     for (std::size_t i = 0; i < sweep.keys.size(); ++i) row["values"][sweep.keys[i]] = run.values[i];
     row["sha256"] = run.sha256;
-    row["mesh_sha256"] = io::text_or_null(run.mesh_sha256);
+    row["files_sha256"] = io::text_or_null(run.files_sha256);
     row["exit_code"] = run.exit_code ? io::Json(*run.exit_code) : io::Json(nullptr);
     row["status"] = run.status;
     row["reason"] = io::text_or_null(run.reason);

@@ -22,7 +22,7 @@ struct SweepRun
   std::string name;                 ///< of its directory: "0001"
   std::vector<std::string> values;  ///< a value per key
   std::string sha256;               ///< of its effective case
-  std::string mesh_sha256;          ///< of its mesh file; empty without one
+  std::string files_sha256;         ///< of the files that it names; empty without any
   std::optional<int> exit_code;     ///< absent while it has not ended; 128 + n for signal n
   std::string status;               ///< of its certificate; else "not run", "bad input", "failed", "crashed"
   std::string reason;
@@ -38,6 +38,7 @@ struct SweepRecord
   std::vector<std::string> keys;
   std::vector<SweepRun> runs;
   std::vector<std::string> titles{};  ///< of the keys: label and unit of a parameter, else the key
+  std::string purpose{};
 };
 
 /// Reads status, reason and figures of a run that has ended, from certificate.json and contact.csv in its
@@ -45,7 +46,7 @@ struct SweepRecord
 void read_results(const std::filesystem::path& directory, SweepRun& run);
 
 /// The complete runs of an earlier sweep in this directory, according to its sweep.json, that solved the same
-/// effective case on the same mesh file; with their exit codes.
+/// effective case and the same files; with their exit codes.
 [[nodiscard]] std::map<std::string, int> complete_runs(const std::filesystem::path& directory,
                                                        const SweepRecord& sweep);
 

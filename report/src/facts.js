@@ -57,11 +57,10 @@ export function guaranteeSection(run) {
 /** The case as it was solved, with what was overridden. */
 export function caseTextSection({ case: effective }) {
   if (!effective?.text) return null;
-  const { text, overrides, sha256 } = effective;
+  const { text, overrides } = effective;
   return section("text", "Case file", "The case file", "As it was solved, with every --set; run again, it gives the same numbers.",
     overrides?.length > 0 ? element("p", { class: "note" }, "Set on the command line: ", overrides.map((item, i) => [i > 0 ? ", " : "", element("code", {}, item)]), ".") : null,
-    element("details", {}, element("summary", {}, "The effective case, with its formulas and body forces"), element("pre", { tabindex: 0 }, text)),
-    sha256 ? element("p", { class: "note" }, "SHA-256 ", element("code", {}, sha256)) : null);
+    element("details", {}, element("summary", {}, "The effective case, with its formulas and body forces"), element("pre", { tabindex: 0 }, text)));
 }
 
 /** The tables of the case with these names, as it has them. */
@@ -150,11 +149,19 @@ export function timesAndMachine(times, machine, program) {
       ["processor", machine.processor && `${machine.processor}, ${machine.processors} logical processors${memory}`],
       ["system", machine.system], ["tribound", `${program.version}, ${program.compiler}`], ["PETSc", program.petsc],
       ["MUMPS", program.mumps], ["BLAS", program.blas && `${program.blas}${program.blas_threads ? `, threads: ${program.blas_threads}` : ""}`],
-      ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen], ["JSON, SHA-256", hashOfRecord && element("code", {}, hashOfRecord)]])));
+      ["MPI", program.mpi], ["Gmsh", program.gmsh], ["Eigen", program.eigen]])));
+}
+
+/** The files of a result by their contents: `record`, which the page shows, the effective case with the files that it names, and others. */
+export function hashes(record, effective, others = []) {
+  const files = [{ file: record, sha256: hashOfRecord }, effective, ...(effective?.files ?? []), ...others].filter((known) => known?.sha256);
+  if (files.length === 0) return null;
+  return [element("h3", {}, "Files by their contents"), table(["file", "SHA-256"], files.map(({ file, sha256 }) => [file, element("code", {}, sha256)]))];
 }
 
 export function levelsSection({ certificate: run, machine }) {
-  return section("times", "Times", "Levels, times, machine", null, levelTable(run), timesAndMachine(run.times, machine, run.program));
+  return section("times", "Times", "Levels, times, machine", null, levelTable(run), timesAndMachine(run.times, machine, run.program),
+    hashes("certificate.json", run.case));
 }
 
 const contents = { "certificate.json": "the whole result, for programs", "convergence.csv": "a row per level", "history.csv": "a row per load step",

@@ -2,7 +2,7 @@
 
 import { axisNames, nameAxes, showsMeridian } from "./axes.js";
 import { count, element, number, section, table, withoutNoise } from "./dom.js";
-import { definitions, filesSection, timesAndMachine } from "./facts.js";
+import { definitions, filesSection, hashes, timesAndMachine } from "./facts.js";
 import { errorsSection, judgedNumbersSection } from "./judgement_charts.js";
 import { comparisonSection } from "./judgement_fields.js";
 import { coreText, halvingText, judgementHeader, placeText } from "./judgement_words.js";
@@ -47,18 +47,21 @@ function forcesSection({ forces, d }) {
 function rigidTable({ rigid_difference: rigid }) {
   if (rigid.length === 0) return null;
   return [element("h3", {}, "Rigid motions between theirs and ours"),
-    table(["body", "translation", "rotation"], rigid.map(({ body, translation, rotation }) => [String(body + 1), measured(placeText(translation), unit("length")), placeText(rotation)]))];
+    table(["body", "translation", "rotation [rad]"], rigid.map(({ body, translation, rotation }) => [String(body + 1), measured(placeText(translation), unit("length")), placeText(rotation)]))];
 }
 
 function readSection(judgement) {
   const { solution, curved_distance: curved, load_step: step, factor } = judgement;
   const length = (value) => measured(number(value, 2), unit("length"));
   return section("read", "Read", "How it was read", null, definitions([["File", solution.file], ["It is", solution.description], ["Read as", judgement.read_as],
-    ["Mesh", `${count(solution.cells)} cells of the mesh of the case, nodes up to ${length(judgement.node_distance)} from their places`],
+    ["Mesh", `${count(solution.cells)} cells of the mesh of the case, nodes ${judgement.node_distance > 0 ? `up to ${length(judgement.node_distance)} from` : "at"} their places`],
     ["Curved edges", curved > 0 ? `up to ${length(curved)} from the straight ones` : null],
     ["Load step", step === null ? null : String(step)],
     ["Factor", factor ? `times ${number(factor, 5)} their displacement is the nearest to ours in the energy norm` : null]]), rigidTable(judgement));
 }
+
+/** The files of theirs, each once. */
+const readFiles = (steps) => [...new Map(steps.map(({ solution }) => [solution.file, solution])).values()];
 
 /** `of_steps`: of all load steps, where these were judged; `judgement` is then that of the worst. */
 export function judgementPage({ judgement, of_steps: ofSteps, program, machine, files, surfaces }) {
@@ -66,7 +69,7 @@ export function judgementPage({ judgement, of_steps: ofSteps, program, machine, 
   nameAxes(judgement.model);
   const fields = comparisonSection(surfaces, judgement, wordsOfCells(judgement));
   const sections = [stepsSection(ofSteps), fields.element, errorsSection(judgement), judgedNumbersSection(judgement), forcesSection(judgement), guaranteeSection(judgement), readSection(judgement),
-    section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program)), filesSection(files)].filter(Boolean);
+    section("times", "Machine", "The machine", null, timesAndMachine({}, machine, program), hashes("judgement.json", null, readFiles(ofSteps?.steps ?? [judgement]))), filesSection(files)].filter(Boolean);
   return { title: `${judgement.title || judgement.file}, judged`, purpose: "This report documents how wrong the solution of another program is, with a guarantee.",
     header: judgementHeader({ judgement, ofSteps, program, machine }), sections, start: fields.start, machine, program };
 }

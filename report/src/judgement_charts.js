@@ -3,7 +3,7 @@
 import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
 import { element, number, powerOfTen, section, table } from "./dom.js";
-import { between, wrongText } from "./judgement_words.js";
+import { wrongText } from "./judgement_words.js";
 import { typeset } from "./math.js";
 import { headed, quantityUnit, unit } from "./units.js";
 
@@ -15,14 +15,14 @@ const row = 40; // pixels
 function intervalChart({ title, name, label, bars, text }) {
   const ends = bars.flatMap(({ low, high }) => [low, high ?? 1.5 * low]);
   const end = 1.02 * Math.max(...ends, Number.MIN_VALUE);
-  const drawn = bars.map((bar) => ({ ...bar, end: bar.high ?? end, words: between([bar.low, bar.high], text) }));
+  const drawn = bars.map((bar) => ({ ...bar, end: bar.high ?? end, words: bar.high === null ? `at least ${text(bar.low)}` : `${text(bar.low)} to ${text(bar.high)}` }));
   const chart = responsive(title, (width) => Plot.plot({
     width, height: 60 + row * bars.length, marginLeft: 16, marginRight: 18, marginTop: 10, marginBottom: 42, style: chartStyle,
     x: { label, grid: true, domain: [0, end], ticks: Math.max(3, width / 110) }, y: { type: "band", axis: null, domain: bars.map((bar) => bar.name) },
     marks: [Plot.ruleX([0]),
       Plot.barX(drawn, { x1: "low", x2: "end", y: "name", insetTop: 20, insetBottom: 7, fill: ofInterval, stroke: ofInterval, strokeWidth: 2 }),
       Plot.text(drawn, { x: 0, y: "name", dx: 5, dy: -9, textAnchor: "start", fill: "currentColor", stroke: "var(--panel)", strokeWidth: 3,
-        text: (d) => `${d.name}: ${d.words}` })],
+        text: (d) => `${d.name}: ${d.words}`, lineWidth: (width - 30) / 12, textOverflow: "ellipsis-middle" })],
   }), { share: 0.47, name, rows: () => bars.map((bar) => ({ of: bar.name, lower: bar.low, upper: bar.high })) });
   return element("figure", {}, element("h3", {}, title), chart);
 }

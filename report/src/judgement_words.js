@@ -15,7 +15,7 @@ const verdicts = {
 };
 
 /** "between 7.31 % and 7.9 %" */
-export function between([lower, upper], text) {
+function between([lower, upper], text) {
   return upper === null ? `at least ${text(lower)}` : `between ${text(lower)} and ${text(upper)}`;
 }
 
@@ -110,7 +110,7 @@ function figures(judgement) {
 export function judgementHeader({ judgement, ofSteps, program, machine }) {
   const verdict = verdicts[(ofSteps ?? judgement).status];
   const { file, description } = judgement.solution;
-  return pageHeader({ program, machine, title: judgement.title, file: judgement.file,
+  return pageHeader({ program, machine, title: judgement.title, purpose: judgement.purpose, file: judgement.file,
     kind: `judgement of ${file} (${description}), ${kindOf(judgement)}`, verdict: { ...verdict, body: verdictBody(judgement, ofSteps) },
     warnings: doubtBox(judgement), figures: figures(judgement) });
 }

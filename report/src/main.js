@@ -28,7 +28,7 @@ async function show() {
     return;
   }
   const page = kinds[kind](embedded(`${kind}-data`));
-  const { title, sections, onPaper = sections, machine, program } = page;
+  const { title, sections, onPaper = sections.filter(({ id }) => id !== "files"), machine, program } = page;
   const written = `Tribound ${program.version} on ${machine.written}`;
   place.replaceChildren(page.header, contents(page.purpose, onPaper), navigation(sections), ...sections,
     element("footer", { class: "screen-only" }, `Written by ${written}. This file needs no network; its data are also in the files beside it.`));

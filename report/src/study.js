@@ -2,7 +2,8 @@
 
 import { coloured } from "./components.js";
 import { count, element, fixed, number, percent, section, seconds, table } from "./dom.js";
-import { definitions, filesSection, timesAndMachine } from "./facts.js";
+import { definitions, filesSection, hashes, timesAndMachine } from "./facts.js";
+import { typeset } from "./math.js";
 import { componentsSection, convergenceSection, effectivitySection } from "./study_charts.js";
 import { studyHeader } from "./study_verdict.js";
 import { measured, nameUnits, unit } from "./units.js";
@@ -23,7 +24,7 @@ function variantsSection(study, files) {
       percent(last?.relative_error), fixed(rates.error), rangeText(extent(levels, "effectivity")) ?? "\u2013", String(total(levels, "newton_steps")),
       seconds(total(levels, "t_level"))];
   });
-  const reasons = variantsOf(study).filter(({ reason }) => reason).map(({ name, reason }) => [name, reason]);
+  const reasons = variantsOf(study).filter(({ reason }) => reason).map(({ name, reason }) => [name, typeset(reason)]);
   return section("variants", "Variants", "The four variants",
     "Bound and error are those of the last level, the bound relative to the norm of the stress, the error to the energy norm. Slopes are exponents of the degrees of freedom, fitted over the last half of the levels.",
     table(["variant", "ended as", "#levels", "#dofs", "#bound", "#slope", "#error", "#slope", "#bound / dual norm", "#Newton steps", "#time"], rows, { class: "variants" }),
@@ -70,7 +71,7 @@ export function studyPage({ study, components, machine, files }) {
   nameUnits(study.units);
   const sections = [convergenceSection(study), effectivitySection(study), componentsSection(study, coloured(components.filter(({ part }) => part !== "combined"))), variantsSection(study, files),
     newtonSection(study), referenceSection(study),
-    section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program)), filesSection(files)].filter(Boolean);
+    section("times", "Times", "Times and machine", null, timesAndMachine(study.times, machine, study.program), hashes("study.json", study.case)), filesSection(files)].filter(Boolean);
   return { title: `${study.title || study.file}, study`, purpose: "This report documents a study: what the adaptation of the mesh and the stopping of Newton\u2019s method bring.",
     header: studyHeader(study, machine), sections, start: async () => {}, machine,
     program: study.program };

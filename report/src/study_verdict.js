@@ -100,7 +100,7 @@ export function studyHeader(study, machine) {
   const { tone, mark, title } = outcome(study);
   const body = definitions([["Stopped", study.interrupted], ["Bound", boundText(study)], ["Rates", ratesText(study)],
     ["Stopping criterion", criterionText(study)], ["Reference", referenceText(study)]]);
-  return pageHeader({ program: study.program, machine, title: study.title, file: study.file,
+  return pageHeader({ program: study.program, machine, title: study.title, purpose: study.purpose, file: study.file,
     kind: `study, ${kindOf(study)}, marking: ${study.marking}, theta = ${number(study.theta)}`, verdict: { tone, mark, title, body },
     figures: figures(study) });
 }

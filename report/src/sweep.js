@@ -3,7 +3,8 @@
 import * as Plot from "@observablehq/plot";
 import { chartStyle, legend, responsive } from "./charts.js";
 import { count, element, number, percent, plural, powerOfTen, seconds, section, table, withoutNoise } from "./dom.js";
-import { definitions, filesSection, timesAndMachine } from "./facts.js";
+import { definitions, filesSection, hashes, timesAndMachine } from "./facts.js";
+import { typeset } from "./math.js";
 import { headed, measured, nameUnits, quantityUnit, unit } from "./units.js";
 import { figure, pageHeader } from "./verdict.js";
 
@@ -125,7 +126,7 @@ function runsSection(sweep, drawn, files) {
     return [files.includes(page) ? element("a", { href: page }, run.run) : run.run, ...sweep.keys.map((key) => run.values[key]), run.status,
       percent(run.relative), ...quantities.map((quantity) => valueCell(quantity, run)), typeof run.dofs === "number" ? count(run.dofs) : "\u2013", seconds(run.seconds)];
   });
-  const reasons = sweep.runs.filter(({ reason }) => reason).map(({ run, reason }) => [run, reason]);
+  const reasons = sweep.runs.filter(({ reason }) => reason).map(({ run, reason }) => [run, typeset(reason)]);
   return section("runs", "Runs", "The runs", "Each has a page of its own. Where a quantity has an error bar, its ends stand in parentheses.",
     table(["run", ...sweep.titles, "ended as", "#bound", ...quantities.map(({ title, unit: label }) => headed(`#${title}`, label)), "#dofs", "#time"], rows, { class: "long" }),
     reasons.length > 0 ? [element("h3", {}, "Why they ended"), definitions(reasons)] : null);
@@ -153,7 +154,7 @@ function sweepHeader(sweep, machine) {
   const shown = [figure(count(sweep.runs.length), sweep.runs.length === 1 ? "run" : "runs", sweep.titles.join(", ")),
     bounds.length > 0 ? figure(percent(Math.max(...bounds)), "largest bound of the error", `smallest ${percent(Math.min(...bounds))}`) : null,
     times.length > 0 ? figure(seconds(times.reduce((a, b) => a + b, 0)), "time of all runs", `mean ${seconds(times.reduce((a, b) => a + b, 0) / times.length)}`) : null];
-  return pageHeader({ program: sweep.program, machine, title: sweep.title, file: sweep.file, kind: `sweep over ${sweep.titles.join(", ")}`,
+  return pageHeader({ program: sweep.program, machine, title: sweep.title, purpose: sweep.purpose, file: sweep.file, kind: `sweep over ${sweep.titles.join(", ")}`,
     verdict: { ...outcome(sweep), body }, figures: element("div", { class: "figures" }, shown.filter(Boolean)) });
 }
 
@@ -170,7 +171,7 @@ export function sweepPage({ sweep, machine, files }) {
     chartSection("numbers", "Numbers", "Other numbers", "Of the computed solutions, without error bars.", of("numbers"), lines, axis),
     chartSection("effort", "Bounds", "Bounds and effort", null, of("effort"), lines, axis),
     runsSection(sweep, drawn, files),
-    section("times", "Machine", "The machine", null, timesAndMachine({}, machine, sweep.program)), filesSection(files.filter((name) => !name.includes("/")))].filter(Boolean);
+    section("times", "Machine", "The machine", null, timesAndMachine({}, machine, sweep.program), hashes("sweep.json")), filesSection(files.filter((name) => !name.includes("/")))].filter(Boolean);
   return { title: `${sweep.title || sweep.file}, sweep`, purpose: `This report documents ${plural(sweep.runs.length, "run", "runs")} of a case with other values of ${sweep.titles.join(", ")}.`,
     header: sweepHeader(sweep, machine), sections, start: async () => {}, machine, program: sweep.program };
 }

@@ -100,11 +100,12 @@ function figures(run, contact) {
 }
 
 /** The common header of both kinds of page; `verdict`: its title, mark, tone and body. */
-export function pageHeader({ program, machine, title, file, kind, verdict, warnings, figures: shown }) {
+export function pageHeader({ program, machine, title, purpose, file, kind, verdict, warnings, figures: shown }) {
   return element("header", {},
     element("p", { class: "brand" }, "Tribound", element("span", {}, ` ${program.version} \u00b7 ${machine.written}`)),
     element("h1", {}, title || file),
     element("p", { class: "subtitle" }, `${file} \u00b7 ${kind}`),
+    purpose ? element("p", { class: "purpose" }, purpose) : null,
     element("div", { class: `verdict verdict-${verdict.tone}`, role: "status" },
       element("span", { class: "verdict-mark", "aria-hidden": "true" }, verdict.mark),
       element("div", {}, element("strong", {}, verdict.title), verdict.body)),
@@ -122,7 +123,7 @@ export function header({ certificate: run, machine }) {
   const shown = figures(run, null);
   const place = shown && element("div", { class: "figures" }, shown);
   return {
-    element: pageHeader({ program: run.program, machine, title: run.title, file: run.file, kind: kindOf(run),
+    element: pageHeader({ program: run.program, machine, title: run.title, purpose: run.purpose, file: run.file, kind: kindOf(run),
       verdict: { title, mark, tone: run.status.replace(" ", "-"), body: element("p", {}, typeset(sentence(run))) },
       warnings: warningBox(run), figures: place }),
     showContact: (summary) => place?.replaceChildren(...figures(run, summary)),

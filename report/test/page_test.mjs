@@ -327,13 +327,15 @@ async function checkGivenCertificate(browser, directory) {
       { kind: "sum", name: "", source: "", force: [2e-16, 1e-15], moment: [1e-16] }] } });
   data.certificate.components.quad = 1;
   for (const row of data.newton) row.quad = 1e6; // then the linearisation is nothing beside the rest
-  data.case = { file: "case.toml", sha256: "0123", overrides: ["degree=3"], text: "[load]\nbody = [0, \"-x\"]" };
+  data.certificate.case = { file: "case.toml", sha256: "0123", files: [{ file: "block.msh", sha256: "4567" }], overrides: ["degree=3"] };
+  data.certificate.purpose = "Does it slide?";
+  data.case = { ...data.certificate.case, text: "[load]\nbody = [0, \"-x\"]" };
   const changed = `${directory}/given.html`;
   writeFileSync(changed, page.replace(text, () => JSON.stringify(data).replaceAll("<", "\\u003c")));
   const given = await openPage(browser, pathToFileURL(changed).href);
   assert.match(await given.page.locator(".warnings").innerText(), /1 warning.*boundary "bottom": of .*raise/s);
   assert.equal(await given.page.locator(".warnings math").count(), 2);
-  for (const [place, words] of [["#text", "degree=3"], ["#text", "body = [0, \"-x\"]"], ["#text", "SHA-256 0123"], ["#case", "body = [0, \"-x\"]"],
+  for (const [place, words] of [["#text", "degree=3"], ["#text", "body = [0, \"-x\"]"], ["#times", "case.toml0123"], ["#times", "block.msh4567"], ["header", "Does it slide?"], ["#case", "body = [0, \"-x\"]"],
     ["#balance", "moments about (0, 0.5)"]]) assert((await given.page.locator(place).textContent()).includes(words), words);
   const rows = await given.page.locator(".balance tbody tr").evaluateAll((list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
   assert.deepEqual(rows, [["load", "top", "traction", "0", "\u22120.2", "\u22120.2"], ["reaction", "left", "displacement", "0", "0.2", "0.2"],

@@ -22,6 +22,11 @@ def tribound(program, *arguments, cwd):
     assert result.returncode == 0, f"{arguments}: exit code {result.returncode}\n{result.stdout}{result.stderr}"
 
 
+def hashed(*files):
+    """As in `case.files` of a certificate."""
+    return [{"file": file.name, "sha256": hashlib.sha256(file.read_bytes()).hexdigest()} for file in files]
+
+
 def without_times(file):
     return [{key: value for key, value in row.items() if not key.startswith("t_")} for row in csv.DictReader(file.open())]
 
@@ -40,6 +45,8 @@ def obstacle_from_a_file(program, directory):
     assert result.returncode == 3, result.stderr  # max_levels
     first = directory / "down/results"
     assert 'surface = "../../input/ridge.stl"' in (first / "case.toml").read_text()
+    files = json.loads((first / "certificate.json").read_text())["case"]["files"]
+    assert files == hashed(directory / "input/ridge.stl"), files
     result = run(program, "run", "-q", first.resolve() / "case.toml", "--set", "output.directory=again_triangles", cwd=directory)
     assert result.returncode == 3, result.stderr
     assert numbers(directory / "again_triangles") == numbers(first)
@@ -61,7 +68,7 @@ def main():
     first = directory / "out/polygon"
     case = first / "case.toml"
     certificate = json.loads((first / "certificate.json").read_text())
-    expected = {"file": "case.toml", "sha256": hashlib.sha256(case.read_bytes()).hexdigest(), "overrides": overrides}
+    expected = {**hashed(case)[0], "files": hashed(directory / "input/polygon.geo"), "overrides": overrides}
     assert certificate["case"] == expected, certificate["case"]
 
     (directory / "elsewhere").mkdir()

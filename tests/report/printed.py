@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the results of two small cases by `tribound report --pdf` and looks for their numbers in the PDF.
+"""Prints the results of two small cases and a sweep by `tribound report --pdf` and looks for their numbers in the PDF.
 
     printed.py PROGRAM DIRECTORY
 
@@ -41,6 +41,7 @@ tolerance = 5
 """
 CUBE = """
 title = "Cube"
+purpose = "Which thrust the floor gives to a cube that is pushed along it."
 degree = 1
 mesh = { box = { lower = [0, 0, 0], upper = [1, 1, 1], cells = [2, 2, 2] } }
 material = { E = 1000.0, nu = 0.3 }
@@ -107,6 +108,7 @@ def expected(certificate: dict[str, Any], directory: Path) -> list[str]:
         *(region["material"] for region in certificate["mesh"]["regions"]),
         *(part["condition"] for part in certificate["mesh"]["boundaries"]),
         *("In plain words", "Guaranteed, without unknown constants", "for the engineer to judge"),
+        certificate["purpose"],
         "This report documents",
         *("Figure 1. Solution: displacement, length", "Figure 5. Error", "Supports, loads and contact"),
     ]
@@ -165,6 +167,26 @@ def check_cube(program: str, directory: Path) -> None:
         assert shown(thrust[end], 6) in text, f"no {end} end in the report of the cube"
 
 
+def check_sweep(program: str, directory: Path) -> None:
+    """Its sections stand close: charts that fit follow on the same sheet."""
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    (directory / "case.toml").write_text(CUBE)
+    sweep = tribound(program, "sweep", "case.toml", "material.nu=[0.2, 0.3]", directory=directory)
+    assert sweep.returncode == 0, sweep.stderr
+    results = directory / "out/case/sweep"
+    printed = tribound(program, "report", str(results), "--pdf", directory=directory)
+    assert printed.returncode == 0, printed.stderr
+    text = text_of(results / "report.pdf")
+    check_sections(text, ["Numbers with error bars", "Other numbers", "Bounds and effort", "The runs", "The machine"])
+    hashed = hashlib.sha256((results / "sweep.json").read_bytes()).hexdigest()
+    purpose = json.loads((results / "sweep.json").read_text())["purpose"]
+    for words in [purpose, hashed, "0002", "certified"]:
+        assert words in text, f"no {words!r} in the report of the sweep"
+    second = printed_by("pdftotext", "-f", "2", "-l", "2", results / "report.pdf", "-")
+    assert "Other numbers" in second, "charts that fit do not follow"
+
+
 def check_failures(program: str, directory: Path) -> None:
     """No Chromium, another program in its place, a page that cannot be shown; a run removes the PDF."""
     results = directory / "a #1 b"
@@ -204,6 +226,7 @@ def main() -> None:
         skip("the report page is not built")
     check_block(program, directory / "block")
     check_cube(program, directory / "cube")
+    check_sweep(program, directory / "sweep")
     check_failures(program, directory / "block")
 
 

@@ -23,6 +23,7 @@
 #include "tribound/case/table_reader.h"
 #include "tribound/fem/degree.h"
 #include "tribound/mesh/box.h"
+#include "tribound/mesh/import/read.h"
 
 namespace tribound::case_file
 {
@@ -177,6 +178,7 @@ Config read_document(const Node& document, std::string file)
   const std::filesystem::path case_directory = std::filesystem::path(file).parent_path();
   config.file = std::move(file);
   root.read("title", config.title);
+  root.read("purpose", config.purpose);
   root.read("not_covered", config.not_covered);
   root.read("degree", config.method.degree);
   if (const Node* node = root.find("units")) config.units = read_units(*node);
@@ -219,6 +221,7 @@ const Table& case_table()
       .name = "",
       .keys =
           std::vector<Key>{{"title", text()},
+                           {"purpose", text()},
                            {"degree", integer_from(1, "the polynomial degree p", fem::max_degree)},
                            model_key(),
                            {"units", keys_of(units_table())},
@@ -244,6 +247,15 @@ const Table& case_table()
 std::filesystem::path default_directory(const std::filesystem::path& case_file)
 {
   return std::filesystem::path("out") / case_file.stem();
+}
+
+std::vector<std::filesystem::path> files_of(const Config& config)
+{
+  std::vector<std::filesystem::path> files = mesh::files_of(config.mesh);
+  for (const auto* surfaces : {&config.obstacles, &config.shapes})
+    for (const SurfaceConfig& surface : *surfaces)
+      if (surface.kind == SurfaceConfig::Kind::surface) files.push_back(surface.file);
+  return files;
 }
 
 mesh::FindSeams find_seams(const Config& config)

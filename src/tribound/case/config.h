@@ -181,6 +181,7 @@ struct Config
 {
   std::string file;  ///< the case file, for messages
   std::string title;
+  std::string purpose;
   std::vector<std::string> not_covered;  ///< added to that of the certificate
   problem::Units units;                  ///< of [units]
   bool is_axisymmetric = false;
@@ -203,6 +204,9 @@ struct Config
   OutputConfig output;
   io::EffectiveCase effective;
 };
+
+/// The files that the case names and whose contents decide the result: of the mesh, and of surfaces.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const Config& config);
 
 /// Finds where the contacts of the case separate the bodies of a mesh. Throws InputError for a boundary that
 /// the mesh does not have. Keeps a reference.

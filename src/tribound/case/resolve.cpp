@@ -338,6 +338,7 @@ std::string label(problem::QuantityKind kind, const io::CaseFacts& facts)
 io::CaseFacts case_facts(const Config& config, int dimension)
 {
   io::CaseFacts facts{.title = config.title,
+                      .purpose = config.purpose,
                       .file = config.file,
                       .dimension = dimension,
                       .degree = config.method.degree,

@@ -29,7 +29,7 @@ class SweepTest : public ::testing::Test
     run.name = "0001";
     run.values = {"1"};
     run.sha256 = "abc";
-    run.mesh_sha256 = "def";
+    run.files_sha256 = "def";
   }
   ~SweepTest() override { fs::remove_all(directory); }
 
@@ -106,7 +106,7 @@ TEST_F(SweepTest, AnotherMeshFileIsSolvedAgain)
   run.exit_code = 0;
   app::SweepRecord record = {"", "case.toml", {"degree"}, {run}};
   app::write_sweep(directory, record, app::sweep_object(record));
-  record.runs[0].mesh_sha256 = "changed";
+  record.runs[0].files_sha256 = "changed";
   EXPECT_THAT(app::complete_runs(directory, record), IsEmpty());
 }
 

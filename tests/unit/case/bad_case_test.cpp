@@ -69,7 +69,7 @@ std::vector<BadCase> syntax()
       {"TableTwice", head + "[newton]\n[newton]\n", "case.toml:4:", "newton: is given twice", "keep one"},
       {"KeyTwice", head + "degree = 1\ndegree = 2\n", "case.toml:4:", "degree: is given twice", "keep one"},
       {"UnknownTopKey", "degre = 2\n" + head, "case.toml:1:1: degre: ", "unknown key",
-       "did you mean \"degree\"? allowed here: title, degree, model, units, parameters, mesh"},
+       "did you mean \"degree\"? allowed here: title, purpose, degree, model, units, parameters, mesh"},
       {"UnknownTable", head + "[plasticity]\n", "case.toml:3:2: plasticity: ", "unknown key",
        "allowed here: "},
       {"UnknownNestedKey", head + "[adapt]\ntolerence = 1\n",
@@ -94,6 +94,8 @@ std::vector<BadCase> values()
   return {
       {"TitleNotText", "title = 5\n" + head,
        "case.toml:1:9: title: ", "must be a string, found the integer 5", "quotes"},
+      {"PurposeNotText", "purpose = [\"why\"]\n" + head,
+       "case.toml:1:11: purpose: ", "must be a string, found an array", "quotes"},
       {"DegreeZero", "degree = 0\n" + head, "case.toml:1:10: degree: ", "an integer from 1 to 4, found 0",
        "polynomial degree"},
       {"DegreeFive", "degree = 5\n" + head, "case.toml:1:10: degree: ", "found 5", "degree"},

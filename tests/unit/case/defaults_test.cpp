@@ -41,6 +41,7 @@ std::map<std::string, std::function<std::string(const case_file::Config&, const 
   const auto truth = [](bool value) { return std::string(value ? "true" : "false"); };
   return {
       {"title", [](const case_file::Config& c, const Row&) { return "`\"" + c.title + "\"`"; }},
+      {"purpose", [](const case_file::Config& c, const Row&) { return "`\"" + c.purpose + "\"`"; }},
       {"degree", [](const case_file::Config& c, const Row&) { return std::to_string(c.method.degree); }},
       {"material.plane", [](const case_file::Config& c, const Row& row)
        { return choice(row, static_cast<int>(c.materials[0].plane)); }},

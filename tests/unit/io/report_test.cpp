@@ -213,10 +213,11 @@ TEST(Report, CertificateNamesTheEffectiveCase)
 {
   io::RunRecord run = certified_run();
   EXPECT_TRUE(json::parse(io::certificate_json(run)).at("case").is_null());
-  run.effective = {"abc", {"degree=2"}};
+  run.effective = {"abc", {"degree=2"}, {{"block.msh", "0123"}}};
   EXPECT_EQ(json::parse(io::certificate_json(run))["case"],
             json({{"file", "case.toml"},
                   {"sha256", "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"},
+                  {"files", {{{"file", "block.msh"}, {"sha256", "0123"}}}},
                   {"overrides", {"degree=2"}}}));
 }
 

@@ -10,8 +10,10 @@
 
 #include "tribound/algebra/petsc.h"
 #include "tribound/base/parallel.h"
+#include "tribound/base/sha256.h"
 #include "tribound/base/version.h"
 #include "tribound/doctor/load_facts.h"
+#include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
 #include "tribound/problem/weights.h"
@@ -205,6 +207,16 @@ MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSp
   facts.regions = region_facts(problem, mesh, units);
   facts.boundaries = boundary_facts(problem, mesh, units);
   return facts;
+}
+
+std::vector<HashedFile> hashed_files(std::span<const std::filesystem::path> files)
+{
+  std::vector<HashedFile> hashed;
+  hashed.reserve(files.size());
+  for (const std::filesystem::path& file : files)
+    if (const std::string content = read_text(file); !content.empty())
+      hashed.push_back({file.filename().string(), sha256(content)});
+  return hashed;
 }
 
 BuildFacts build_facts()

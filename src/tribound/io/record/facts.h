@@ -3,6 +3,8 @@
 /// @file facts.h
 /// Facts about a case, its mesh and the program, as plain data for the report and the console.
 
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,16 +18,25 @@
 namespace tribound::io
 {
 
+/// A file by its contents.
+struct HashedFile
+{
+  std::string name;    ///< for people
+  std::string sha256;  ///< FIPS 180-4, 64 hexadecimal digits
+};
+
 /// The solved case: the case file with every --set applied.
 struct EffectiveCase
 {
   std::string text;                    ///< TOML; a case file for output.directory
   std::vector<std::string> overrides;  ///< as given
+  std::vector<HashedFile> files = {};  ///< that it names; empty until they are read
 };
 
 struct CaseFacts
 {
   std::string title;
+  std::string purpose{};  ///< what the computation is for, in the words of its author
   std::string file;
   int dimension = 0;
   int degree = 0;
@@ -101,6 +112,9 @@ struct BuildFacts
 template <int dim>
 [[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                    const fem::Constraints& constraints, const problem::Units& units = {});
+
+/// The files by their names without directories; without those that cannot be read.
+[[nodiscard]] std::vector<HashedFile> hashed_files(std::span<const std::filesystem::path> files);
 
 /// Facts about the program and the libraries it runs with.
 [[nodiscard]] BuildFacts build_facts();

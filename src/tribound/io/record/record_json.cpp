@@ -119,12 +119,16 @@ Json mesh_json(const MeshFacts& mesh)
   return object;
 }
 
-Json effective_case_json(const RunRecord& run)
+Json effective_case_json(const EffectiveCase& effective, const std::string& file)
 {
-  if (run.effective.text.empty()) return nullptr;
-  return {{"file", run.case_file},
-          {"sha256", sha256(run.effective.text)},
-          {"overrides", run.effective.overrides}};
+  if (effective.text.empty()) return nullptr;
+  Json object{{"file", file},
+              {"sha256", sha256(effective.text)},
+              {"files", Json::array()},
+              {"overrides", effective.overrides}};
+  for (const auto& [name, hash] : effective.files)
+    object["files"].push_back({{"file", name}, {"sha256", hash}});
+  return object;
 }
 
 Json path_json(const adapt::PathEnd& path)
@@ -169,8 +173,9 @@ Json certificate(const RunRecord& run)
   Json object{{"schema", certificate_schema},
               {"program", program_json(run.build)},
               {"title", run.facts.title},
+              {"purpose", run.facts.purpose},
               {"file", run.facts.file},
-              {"case", effective_case_json(run)},
+              {"case", effective_case_json(run.effective, run.case_file)},
               {"status", certify::to_string(run.status)},
               {"reason", text_or_null(run.reason)},
               {"d", run.facts.dimension},

@@ -22,8 +22,9 @@ namespace tribound::io
 /// `mesh` of certificate.json and of `tribound check --json`, see docs/output.md.
 [[nodiscard]] Json mesh_json(const MeshFacts& mesh);
 
-/// `case` of the certificate: the effective case by the hash of its text; null where there is none.
-[[nodiscard]] Json effective_case_json(const RunRecord& run);
+/// `case` of the certificate: the effective case, whose file has this name, and the files that it names, by
+/// their hashes; null where there is none.
+[[nodiscard]] Json effective_case_json(const EffectiveCase& effective, const std::string& file);
 
 /// `levels` of the certificate, including earlier ones; for a history, the passes; and `steps`.
 [[nodiscard]] Json levels_json(const RunRecord& run);

@@ -170,4 +170,14 @@ AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const s
   return boxes.front().box.cells.size() == 3 ? finish(box_meshes<3>(boxes)) : finish(box_meshes<2>(boxes));
 }
 
+std::vector<std::filesystem::path> files_of(const MeshSource& source)
+{
+  const auto* file = std::get_if<MeshFile>(&source);
+  if (file == nullptr) return {};
+  std::error_code error;
+  return suffix_of(file->path) == ".inp" && std::filesystem::is_regular_file(file->path, error)
+             ? files_of_inp(file->path)
+             : std::vector{file->path};
+}
+
 }  // namespace tribound::mesh

@@ -4,6 +4,7 @@
 /// Meshes from files of all formats: one way from the file to the simplicial mesh.
 
 #include <atomic>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <variant>
@@ -33,5 +34,9 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
                                 const std::atomic<bool>* stop = nullptr,
                                 std::vector<std::string>* notes = nullptr,
                                 std::span<const FormulaGroup> groups = {});
+
+/// The files that the mesh is read from: a deck with those that it includes, else what the case names; none
+/// for boxes. Files that a .geo or a .pvtu names are not among them.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const MeshSource& source);
 
 }  // namespace tribound::mesh
