@@ -201,14 +201,9 @@ double ContactGap<dim>::operator()(std::size_t k, const AdmissibleTraction<dim>&
   }
   if (thresholds.maxCoeff() > 0)
   {
-    Eigen::VectorXd s = of_slip.raise * thresholds;
-    if (problem.is_axisymmetric())
-    {
-      s = of_slip.at_nodes * thresholds;
-      for (Eigen::Index i = 0; i < s.size(); ++i) s[i] *= problem.weight(map(of_slip.nodes[i]));
-      s = (of_slip.from_nodes * s).eval();
-    }
-    sum += of_slip.integral(s, slips);
+    Eigen::VectorXd s = of_slip.at_nodes * thresholds;
+    for (Eigen::Index i = 0; i < s.size(); ++i) s[i] *= problem.weight(map(of_slip.nodes[i]));
+    sum += of_slip.integral(of_slip.from_nodes * s, slips);
   }
   return std::max(0.0, form_.segments()[k].det() * sum);
 }
