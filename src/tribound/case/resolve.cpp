@@ -338,7 +338,6 @@ std::string label(problem::QuantityKind kind, const io::CaseFacts& facts)
 io::CaseFacts case_facts(const Config& config, int dimension)
 {
   io::CaseFacts facts{.title = config.title,
-                      .purpose = config.purpose,
                       .file = config.file,
                       .dimension = dimension,
                       .degree = config.method.degree,
@@ -346,6 +345,7 @@ io::CaseFacts case_facts(const Config& config, int dimension)
                       .friction = friction_name(config),
                       .gamma0 = config.method.gamma_0(),
                       .units = config.units,
+                      .purpose = config.purpose,
                       .not_covered = config.not_covered,
                       .is_axisymmetric = config.is_axisymmetric};
   for (const QuantityConfig& quantity : config.quantities)

@@ -36,7 +36,6 @@ struct EffectiveCase
 struct CaseFacts
 {
   std::string title;
-  std::string purpose{};  ///< what the computation is for, in the words of its author
   std::string file;
   int dimension = 0;
   int degree = 0;
@@ -46,6 +45,8 @@ struct CaseFacts
   problem::Units units{};
   /// The units of the [[quantity]] tables, by name; empty for pure numbers, and where no units are named.
   std::vector<std::pair<std::string, std::string>> quantity_units{};
+  /// What the computation is for, in the words of its author.
+  std::string purpose{};
   /// What the case leaves out of the problem that it stands for, in the words of its author.
   std::vector<std::string> not_covered{};
   /// Whether the mesh is the meridian of a body of revolution.
