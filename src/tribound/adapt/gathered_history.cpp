@@ -12,8 +12,9 @@ namespace
 template <int dim>
 using State = typename GatheredHistory<dim>::State;
 
-/// Points of segments closer than this are the same up to rounding.
-constexpr double same_point = 1e-8;  // of the size of the segment
+/// Points of segments closer than this are the same up to rounding, which moves most the corners of segments
+/// where edges of both sides are nearly parallel.
+constexpr double same_point = 1e-6;  // of the size of the segment
 
 /// The state at x; null where there is none. `states` are sorted by boundary and first coordinate.
 template <int dim>
