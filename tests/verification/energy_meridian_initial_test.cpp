@@ -34,8 +34,9 @@ problem::Region<2> heated(const std::string& name, const problem::Material& mate
   return region;
 }
 
-/// Temperatures linear in z expand a body without stress, see axisymmetric_loads_test.cpp.
-TEST(EnergyMeridianInitial, FreeExpansionHasNoError)
+/// Temperatures linear in z expand a body without stress, see axisymmetric_loads_test.cpp; tractions give it
+/// constant stresses beside that.
+TEST(EnergyMeridianInitial, FreeExpansionIsExact)
 {
   constexpr double alpha = 1e-3;
   for (const double inner : {0.0, 0.5})
@@ -43,13 +44,15 @@ TEST(EnergyMeridianInitial, FreeExpansionHasNoError)
     {
       const double b = p == 1 ? 0 : 0.7;
       ProblemData<2> data{
-          .boundaries = {fixed<2>("bottom", free, formula(fmt::format("{:.17g}*x^2", -alpha * b / 2)))}};
+          .boundaries = {fixed<2>("bottom", free, formula(fmt::format("{:.17g}*x^2", -alpha * b / 2))),
+                         loaded<2>("right", 0.01, 0), loaded<2>("top", 0, 0.02)}};
+      if (inner > 0) data.boundaries.push_back(loaded<2>("left", -0.01, 0));
       data.regions = {heated("box", lame(2, 0.3), alpha, formula(fmt::format("2 + {}*y", b)))};
       const MeridianProblem c(random_meridian(inner, 3, 7), data,
                               {.degree = p, .newton = {.tolerance = 1e-13}});
       const certify::EnergyBound eta = bound_of(c, c.solve().u);
       EXPECT_EQ(eta.reason, "");
-      EXPECT_LE(eta.bound, 1e-14) << inner << ", p = " << p;
+      EXPECT_LE(eta.bound, 1e-13) << inner << ", p = " << p;
     }
 }
 
@@ -110,7 +113,7 @@ void expect_exact(const MeridianProblem& c, const std::function<Point<2>(const P
     const double rounding = 1e-9 * std::abs(values[i]);
     EXPECT_LE(interval.lower, values[i] + rounding) << interval.name << p;
     EXPECT_GE(interval.upper, values[i] - rounding) << interval.name << p;
-    EXPECT_LE(interval.upper - interval.lower, 3 * error / norm * std::abs(values[i])) << interval.name << p;
+    EXPECT_LE(interval.upper - interval.lower, 6 * error / norm * std::abs(values[i])) << interval.name << p;
   }
 }
 
@@ -197,7 +200,7 @@ std::vector<problem::Quantity<2>> forces_and(const std::string& boundary, const 
 TEST(EnergyMeridianInitial, NoBoundFailsInRandomCases)
 {
   std::vector<double> found;
-  for (unsigned seed = 0; seed < n_cases(16); ++seed)
+  for (unsigned seed = 0; seed < n_cases(8); ++seed)
   {
     RandomMeridian random{std::mt19937(seed)};
     const double inner = std::array{0.0, 0.05, 0.0, 0.5}[seed % 4];
@@ -211,7 +214,7 @@ TEST(EnergyMeridianInitial, NoBoundFailsInRandomCases)
     if (seed % 4 == 3) c.method.newton.max_steps = 1;
     found.push_back(expect_intervals(c, forces_and("bottom", "right"), c.solve().u,
                                      fmt::format("seed {}, p = {}, inner = {}", seed, p, inner)));
-    if (seed % 2 == 0) continue;
+    if (seed % 4 != 1) continue;
     const MeridianProblem two = rings(seed, p, true);
     found.push_back(expect_intervals(two, forces_and("right", "right_outer"), two.solve().u,
                                      fmt::format("rings {}, p = {}", seed, p)));
