@@ -11,7 +11,8 @@ from pathlib import Path
 
 LARGEST, ALL = 120_000, 2_500_000  # bytes: one picture, all pictures
 NARROWEST = 800  # pixels
-FIGURES = ("paper_components.svg", "paper_convergence.svg", "validation.png")  # of other pages: scripts/study_figures, scripts/validation
+FIGURES = (  # of other pages: scripts/study_figures, scripts/validation
+    "paper_components.svg", "paper_convergence.svg", "paper_revolution.svg", "validation.png")
 
 
 def png_size(file):
