@@ -333,6 +333,8 @@ load_steps_go_on("joint_of_two", 2, f"{EXAMPLES}/22_contraction_joint/case.toml"
 load_steps_go_on("rock3d_in_steps", 2, f"{EXAMPLES}/09_dam_on_rock/case3d.toml", "--set", "degree=1", "--set", "adapt.max_levels=0", "--set",
                  "solver.method=direct", "--set", "history.steps=[30, 45, 50]", "--set", "newton.tolerance=1e-12", "--set",
                  "boundary.upstream.pressure='1000*9.81*1e-6*max(0, t - y)'", "--set", "boundary.reservoir.pressure='1000*9.81*1e-6*t'")
+load_steps_go_on("thin_segments", 1, f"{EXAMPLES}/24_arch_dam/case.toml", "--set", "degree=1", "--set", "adapt.tolerance=0.9", "--set", "history.steps=[0, 1]",
+                 "--set", "solver.method=direct", "--set", "newton.tolerance=1e-12")
 killed_load_steps_go_on("killed_steps", *DAM_TO_FAILURE, "--set", "adapt.max_levels=1")
 bad_input_is_told_once()
 commands_for_one_process()

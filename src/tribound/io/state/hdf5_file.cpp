@@ -140,7 +140,9 @@ void Hdf5File::read_bytes(const std::string& name, Type type, void* values, std:
   const std::array<hid_t, 5> types = {H5T_NATIVE_INT32, H5T_NATIVE_INT64, H5T_NATIVE_UINT64,
                                       H5T_NATIVE_DOUBLE, H5T_NATIVE_CHAR};
   const Shape own{n_rows, static_cast<hsize_t>(width)};
-  const auto first = static_cast<hsize_t>(ranks_.before(static_cast<std::int64_t>(n_rows)));
+  const auto n = static_cast<std::int64_t>(n_rows);
+  if (ranks_.sum(n) == 0) return;  // has no space in the file, and ranks cannot read it together
+  const auto first = static_cast<hsize_t>(ranks_.before(n));
   const Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
   const Handle space(set.good() ? H5Dget_space(set.get()) : -1, H5Sclose);
   const Handle memory = make_space(own);
