@@ -55,7 +55,7 @@ class MeridianFields
   [[nodiscard]] std::array<Eigen::VectorXd, 4> initial_stress(Index c, const SortedCell<2>& cell) const;
   [[nodiscard]] bool has_initial_stress(Index c) const { return form_.data().initial_stress().acts_on(c); }
   /// Adds r sigma_0 and r sigma_{0,tt} in P^p; on cells with an edge on the axis r times the projection of
-  /// sigma_0 onto P^{p-1} with the weight r.
+  /// sigma_0 onto P^{p-1} with the weight r, of the entries in the meridian.
   void add_initial_stress(Index c, const SortedCell<2>& cell, WeightedStress& stress) const;
 
   /// The radial and the axial component of r f~ in P^p: the projection of r f; on cells with an edge on the
