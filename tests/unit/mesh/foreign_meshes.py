@@ -200,8 +200,8 @@ def write_by_meshio(directory, name, grid_file):
     path = directory / f"{name}-meshio.med"
     try:
         mesh.write(path)
-    except KeyError:
-        path.unlink()
+    except (KeyError, ImportError):  # or h5py is not there, which Debian's meshio does not ask for
+        path.unlink(missing_ok=True)
 
 
 # VTK's cell type: libmed's name, and for each of its nodes that of VTK, which has the opposite orientation.
