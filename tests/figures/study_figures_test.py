@@ -97,6 +97,7 @@ def make_study(program, directory, text, dimension):
                     rows.append({"variant": variant, **row, "energy_error": bound / 2, "stress_error": bound / 1.05,
                                  "dual_norm": bound / 1.2 if row["level"] < "3" else "",  # not always affordable
                                  "effectivity": 1.2 if row["level"] < "3" else "", "effectivity_stress": 1.05,
+                                 "energy_effectivity": 1.3 if base == "adaptive" else "",  # not without a bound
                                  "rate_error": "", "rate_bound": ""})
         for file in (directory / base).glob("level_*.vtu"):
             add_error(file)
@@ -114,7 +115,8 @@ def interrupt(directory):
     with (directory / "study.csv").open(newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["variant"] == "adaptive"]
     for row in rows:
-        row.update(dict.fromkeys(("energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress"), ""))
+        row.update(dict.fromkeys(("energy_error", "stress_error", "dual_norm", "effectivity", "effectivity_stress",
+                                  "energy_effectivity"), ""))
     with (directory / "study.csv").open("w", newline="") as stream:
         writer = csv.DictWriter(stream, rows[0])
         writer.writeheader()
