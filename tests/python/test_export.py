@@ -114,8 +114,11 @@ class Meshio(unittest.TestCase):
     def test_files_can_be_read(self) -> None:
         import meshio
 
+        formats: list[tuple[str, dict[str, str]]] = [("vtu", {})]
+        if find_spec("h5py"):  # meshio has XDMF with it alone
+            formats.append(("xdmf", {"data_format": "XML"}))
         for dimension, degree in CASES:
-            for suffix, options in (("vtu", {}), ("xdmf", {"data_format": "XML"})):
+            for suffix, options in formats:
                 with self.subTest(
                     dimension=dimension, degree=degree, suffix=suffix
                 ), tempfile.TemporaryDirectory() as folder:
