@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/fields.h"
+#include "verification/heated_cylinder.h"
 #include "verification/meridian_energy.h"
 
 namespace tribound::test
@@ -127,26 +128,14 @@ problem::Quantity<2> mean(const std::string& boundary)
           .direction = e_r};
 }
 
-/// A long cylinder with radii 1 and 2, hotter inside: theta falls like the logarithm of r [Timoshenko and
-/// Goodier, Theory of Elasticity, section 151].
 TEST(EnergyMeridianInitial, HeatedCylinder)
 {
-  constexpr double alpha = 1e-3;
-  constexpr double nu = 0.3;
-  constexpr double theta = 5;
-  const double factor = alpha * (1 + nu) / (1 - nu);
-  const auto moment = [](double r)  // the integral of theta r from 1 to r
-  {
-    const auto at = [](double x) { return x * x / 2 * std::log(x / 2) - x * x / 4; };
-    return -theta / std::numbers::ln2 * (at(r) - at(1));
-  };
-  const double c2 = factor * moment(2) / 3;
+  const HeatedCylinder cylinder;
   const auto exact = [&](const Point<2>& x) -> Point<2> {
-    return {factor * moment(x[0]) / x[0] + (1 - 2 * nu) * c2 * x[0] + c2 / x[0], 0};
+    return {cylinder.u_r(x[0]), 0};
   };
   ProblemData<2> data{.boundaries = {fixed<2>("bottom", free, 0.0), fixed<2>("top", free, 0.0)}};
-  data.regions = {
-      heated("box", lame(2, nu), alpha, formula(fmt::format("{:.17g}*log(2/x)", theta / std::numbers::ln2)))};
+  data.regions = {heated("box", lame(2, cylinder.nu), cylinder.alpha, cylinder.temperature())};
   for (const int p : {1, 2, 3})
     expect_exact({box<2>({1, 0}, {2, 0.5}, {4, 2}), data, {.degree = p, .newton = {.tolerance = 1e-13}}},
                  exact, {energy, mean("right")}, {exact({2, 0})[0]});
