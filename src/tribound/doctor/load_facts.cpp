@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/fem/evaluation.h"
-#include "tribound/problem/weights.h"
 
 namespace tribound::doctor
 {
@@ -60,17 +60,6 @@ struct BoundaryLoad
   double measure = 0;
 };
 
-/// The measure of a facet, with the weight r on the meridian of bodies of revolution.
-template <int dim>
-double weighted_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                        const mesh::BoundaryFacet& facet)
-{
-  return mesh::facet_geometry(mesh, facet.cell, facet.local).measure *
-         problem::mean_weight<dim>(
-             problem,
-             mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local)));
-}
-
 /// The integral of g_N and the forces on rigid parts, whose moments count as forces over the size, of bodies
 /// of revolution those for one radian; sets the largest mean of their sizes over a boundary.
 template <int dim>
@@ -85,7 +74,7 @@ Point<dim> traction_resultant(const contact::NitscheForm<dim>& form, LoadFacts& 
   {
     const mesh::BoundaryFacet& facet = mesh.boundary()[k];
     if (form.problem().boundary(facet.tag).rigid)
-      loads[facet.tag].measure += weighted_measure(form.problem(), mesh, facet);
+      loads[facet.tag].measure += contact::weighted_measure(form.problem(), mesh, facet);
     if (facet.tag < 0 || !form.data().has_traction(k)) continue;
     form.data().traction(k, g);
     for (const auto& [q, x, dx] : fem::facet_points(mesh, facet.cell, facet.local, rule))
@@ -162,7 +151,7 @@ double supporting_measure(const problem::Problem<dim>& problem, const mesh::Mesh
   {
     const problem::BoundaryCondition<dim>& condition = problem.boundary(facet.tag);
     if (problem.is_in_contact(facet.tag) || condition.holds_any())
-      measure += weighted_measure(problem, mesh, facet);
+      measure += contact::weighted_measure(problem, mesh, facet);
   }
   return measure;
 }

@@ -10,8 +10,8 @@
 #include "tribound/certify/energy/load_oscillation.h"
 #include "tribound/certify/energy/meridian_edge_forces.h"
 #include "tribound/contact/nitsche/contact_moments.h"
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/mesh/geometry.h"
-#include "tribound/problem/weights.h"
 
 namespace tribound::certify
 {
@@ -113,10 +113,9 @@ void set_resultant(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& 
   for (const mesh::BoundaryFacet& facet : mesh.owned_boundary())
   {
     if (facet.tag != tag) continue;
-    const auto x = mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
-    const double measure = problem.full_circle() * problem::mean_weight<dim>(problem, x) *
-                           mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
-    for (const Point<dim>& vertex : x) sum.template head<dim>() += measure / dim * vertex;
+    const double measure = problem.full_circle() * contact::weighted_measure(problem, mesh, facet);
+    for (const Index v : mesh::facet_vertices(mesh.cell(facet.cell), facet.local))
+      sum.template head<dim>() += measure / dim * mesh.vertex(v);
     sum[dim] += measure;
   }
   mesh.ranks().sum(std::span(sum.data(), sum.size()));

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/fem/evaluation.h"
 #include "tribound/fem/simplex_parts.h"
 #include "tribound/problem/weights.h"
@@ -28,11 +29,8 @@ void set_geometry(const contact::NitscheForm<dim>& form, QuantityParts<dim>& par
     const bool counts =
         parts.tag >= 0 ? facet.tag == parts.tag : form.problem().contact(facet.tag) != nullptr;
     if (!counts) continue;
-    const mesh::FacetGeometry<dim> geometry = mesh::facet_geometry(mesh, facet.cell, facet.local);
-    const auto vertices =
-        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
-    const double measure = problem::mean_weight<dim>(form.problem(), vertices) * geometry.measure;
-    sum.template head<dim>() += measure * geometry.normal;
+    const double measure = contact::weighted_measure(form.problem(), mesh, facet);
+    sum.template head<dim>() += measure * mesh::facet_geometry(mesh, facet.cell, facet.local).normal;
     sum[dim] += measure;
   }
   mesh.ranks().sum(std::span(sum.data(), sum.size()));

@@ -1,6 +1,7 @@
 #include "tribound/contact/nitsche/given_data.h"
 
 #include "tribound/mesh/geometry.h"
+#include "tribound/problem/weights.h"
 
 namespace tribound::contact
 {
@@ -46,11 +47,25 @@ Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment)
   return datum;
 }
 
+template <int dim>
+double weighted_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                        const mesh::BoundaryFacet& facet)
+{
+  const auto vertices =
+      mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
+  return problem::mean_weight<dim>(problem, vertices) *
+         mesh::facet_geometry<dim>(vertices, facet.local).measure;
+}
+
 template Datum<2> body_datum(const problem::Problem<2>&, const mesh::Mesh<2>&, Index);
 template Datum<3> body_datum(const problem::Problem<3>&, const mesh::Mesh<3>&, Index);
 template Datum<2> traction_datum(const problem::Problem<2>&, const mesh::Mesh<2>&,
                                  const mesh::BoundaryFacet&);
 template Datum<3> traction_datum(const problem::Problem<3>&, const mesh::Mesh<3>&,
+                                 const mesh::BoundaryFacet&);
+template double weighted_measure(const problem::Problem<2>&, const mesh::Mesh<2>&,
+                                 const mesh::BoundaryFacet&);
+template double weighted_measure(const problem::Problem<3>&, const mesh::Mesh<3>&,
                                  const mesh::BoundaryFacet&);
 template Datum<2, 3> contact_datum(const ContactSegment<2>&);
 template Datum<3, 3> contact_datum(const ContactSegment<3>&);

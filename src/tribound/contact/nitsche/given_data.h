@@ -21,6 +21,11 @@ template <int dim>
 [[nodiscard]] Datum<dim> traction_datum(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                         const mesh::BoundaryFacet& facet);
 
+/// The measure of a boundary facet, on the meridian of a body of revolution with the weight r.
+template <int dim>
+[[nodiscard]] double weighted_measure(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                                      const mesh::BoundaryFacet& facet);
+
 /// In direction 0 the stress gamma g, if g is given; in direction 1 s, in direction 2 p_w.
 template <int dim>
 [[nodiscard]] Datum<dim, 3> contact_datum(const ContactSegment<dim>& segment);

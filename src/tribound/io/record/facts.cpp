@@ -12,6 +12,7 @@
 #include "tribound/base/parallel.h"
 #include "tribound/base/sha256.h"
 #include "tribound/base/version.h"
+#include "tribound/contact/nitsche/given_data.h"
 #include "tribound/doctor/load_facts.h"
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/geometry.h"
@@ -93,10 +94,7 @@ std::vector<BoundaryFacts> boundary_facts(const problem::Problem<dim>& problem, 
   {
     BoundaryFacts& boundary = facet.tag < 0 ? boundaries.back() : boundaries[facet.tag];
     ++boundary.facets;
-    const auto vertices =
-        mesh::points_of(mesh.vertices(), mesh::facet_vertices(mesh.cell(facet.cell), facet.local));
-    boundary.measure += problem.full_circle() * problem::mean_weight<dim>(problem, vertices) *
-                        mesh::facet_geometry(mesh, facet.cell, facet.local).measure;
+    boundary.measure += problem.full_circle() * contact::weighted_measure(problem, mesh, facet);
   }
   for (BoundaryFacts& boundary : boundaries)
   {
