@@ -97,7 +97,7 @@ class SparseMatrix
   [[nodiscard]] std::vector<double> diagonal() const;
   /// New values for the (row, column, value) entries the matrix was made of, in the same order.
   void set_values(std::span<const double> values);
-  /// this = a + b again with other values, after sum(a, b).
+  /// this = a + b again with other values of b, after sum(a, b).
   void assign_sum(const SparseMatrix& a, const SparseMatrix& b);
 
   [[nodiscard]] _p_Mat* handle() const { return mat_.get(); }

@@ -41,13 +41,22 @@ struct Rows
   const PetscInt* begin = nullptr;
   const PetscInt* columns = nullptr;
   PetscScalar* entries = nullptr;
+
+  /// That of a row with x.
+  [[nodiscard]] double product(PetscInt row, std::span<const double> x) const
+  {
+    double sum = 0;
+    for (PetscInt k = begin[row]; k < begin[row + 1]; ++k) sum += entries[k] * x[columns[k]];
+    return sum;
+  }
 };
 
-/// A / scale in blocks of floats, block row by block row, column by column in a block.
-class SingleBlocks
+/// The blocks of A that have entries; A / scale in these as floats, block row by block row, column by column
+/// in a block.
+class Blocks
 {
  public:
-  explicit SingleBlocks(Mat a)
+  explicit Blocks(Mat a)
   {
     PetscInt rows = 1;
     PetscInt columns = 1;
@@ -78,24 +87,72 @@ class SingleBlocks
     }
   }
 
+  /// Whether multiply_exactly() is there.
+  [[nodiscard]] bool are_of_nodes() const { return height_ == n_components && width_ == n_components; }
+
+  /// y = A x in double precision. Where a block is whole, one index serves its nine entries, and the sums of
+  /// its columns need not wait for each other. Fourth lanes are those of the next block, and not used.
+  void multiply_exactly(Mat a, std::span<const double> x, std::span<double> y)
+  {
+    using Lanes4 = Eigen::Vector4d;
+    constexpr int n = n_components;
+    const Rows rows(a);
+    find_blocks(a, rows);
+    padded_.assign(x.begin(), x.end());
+    padded_.push_back(0);
+    for_each_row(
+        [&](PetscInt i)
+        {
+          const bool is_last = n * (i + 1) == rows.n;  // nothing follows it in memory
+          const PetscInt n_entries = rows.begin[n * (i + 1)] - rows.begin[n * i];
+          if (is_last || n_entries != n * n * (begin_[i + 1] - begin_[i]))
+          {
+            for (PetscInt r = n * i; r < n * (i + 1); ++r) y[r] = rows.product(r, x);
+            return;
+          }
+          std::array<Lanes4, n> sums;
+          sums.fill(Lanes4::Zero());
+          const double* entries = rows.entries + rows.begin[n * i];
+          for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k, entries += n)
+          {
+            const Eigen::Map<const Lanes4> of_node(padded_.data() + std::size_t(n) * columns_[k]);
+            for (int r = 0; r < n; ++r)
+              sums[r] += Eigen::Map<const Lanes4>(entries + r * (n_entries / n)).cwiseProduct(of_node);
+          }
+          for (int r = 0; r < n; ++r) y[n * i + r] = sums[r].head<n>().sum();
+        });
+  }
+
  private:
+  static constexpr int n_components = 3;
   static int divisor(PetscInt size) { return size % 3 == 0 ? 3 : size % 2 == 0 ? 2 : 1; }
+
+  /// work(i) for every block row.
+  template <class Work>
+  void for_each_row(const Work& work) const
+  {
+    constexpr PetscInt worth_threads = 5'000;
+    const auto n = static_cast<PetscInt>(begin_.size()) - 1;
+    const int n_threads = n < worth_threads ? 1 : max_threads();
+#pragma omp parallel for schedule(static) num_threads(n_threads)
+    for (PetscInt i = 0; i < n; ++i) work(i);
+  }
 
   void update(Mat a)
   {
     if (!is_stale_) return;
-    PetscObjectState pattern = 0;
-    check(MatGetNonzeroState(a, &pattern), making);
     const Rows rows(a);
-    if (pattern != pattern_) find_blocks(rows);
+    find_blocks(a, rows);
     fill(rows);
-    pattern_ = pattern;
     is_stale_ = false;
   }
 
-  /// The blocks with an entry.
-  void find_blocks(const Rows& rows)
+  /// The blocks with an entry, unless they are known.
+  void find_blocks(Mat a, const Rows& rows)
   {
+    PetscObjectState pattern = 0;
+    check(MatGetNonzeroState(a, &pattern), making);
+    if (pattern == pattern_) return;
     const PetscInt n = rows.n / height_;
     begin_.assign(1, 0);
     columns_.clear();
@@ -113,6 +170,8 @@ class SingleBlocks
       begin_.push_back(static_cast<PetscInt>(columns_.size()));
     }
     place_.resize(rows.n_columns / width_);
+    pattern_ = pattern;
+    is_stale_ = true;
   }
 
   void fill(const Rows& rows)
@@ -137,25 +196,22 @@ class SingleBlocks
   template <int width>
   void multiply_blocks(double factor, std::span<const double> z, std::span<double> y) const
   {
-    constexpr PetscInt worth_threads = 5'000;
-    const auto n = static_cast<PetscInt>(begin_.size()) - 1;
-    const int n_threads = n < worth_threads ? 1 : max_threads();
     const std::size_t height = height_;
-#pragma omp parallel for schedule(static) num_threads(n_threads)
-    for (PetscInt i = 0; i < n; ++i)
-    {
-      std::array<Lanes, width> sums;  // one per column: additions need not wait for each other
-      sums.fill(Lanes::Zero());
-      for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k)
-      {
-        const float* block = entries_.data() + height * width * k;
-        const float* x = x_.data() + std::size_t(width) * columns_[k];
-        for (int c = 0; c < width; ++c) sums[c] += x[c] * Eigen::Map<const Lanes>(block + height * c);
-      }
-      for (int c = 1; c < width; ++c) sums[0] += sums[c];
-      for (std::size_t r = height * i; r < height * (i + 1); ++r)
-        y[r] = (z.empty() ? 0 : z[r]) + factor * sums[0][static_cast<int>(r - height * i)];
-    }
+    for_each_row(
+        [&](PetscInt i)
+        {
+          std::array<Lanes, width> sums;  // one per column: additions need not wait for each other
+          sums.fill(Lanes::Zero());
+          for (PetscInt k = begin_[i]; k < begin_[i + 1]; ++k)
+          {
+            const float* block = entries_.data() + height * width * k;
+            const float* x = x_.data() + std::size_t(width) * columns_[k];
+            for (int c = 0; c < width; ++c) sums[c] += x[c] * Eigen::Map<const Lanes>(block + height * c);
+          }
+          for (int c = 1; c < width; ++c) sums[0] += sums[c];
+          for (std::size_t r = height * i; r < height * (i + 1); ++r)
+            y[r] = (z.empty() ? 0 : z[r]) + factor * sums[0][static_cast<int>(r - height * i)];
+        });
   }
 
   /// A column of a block, and what follows it in memory.
@@ -170,18 +226,20 @@ class SingleBlocks
   std::vector<PetscInt> columns_;  ///< per block
   std::vector<float> entries_;     ///< with padding for Lanes
   std::vector<float> x_;           ///< working space
+  std::vector<double> padded_;     ///< working space
   std::vector<PetscInt> place_;    ///< working space: of a block of the row, by its column
 };
 
 /// The blocks kept with the matrix.
-SingleBlocks& blocks_of(Mat a)
+Blocks& blocks_of(Mat a)
 {
-  if (auto* blocks = find_attached<SingleBlocks>(a, key)) return *blocks;
-  return attach(a, key, std::make_unique<SingleBlocks>(a));
+  if (auto* blocks = find_attached<Blocks>(a, key)) return *blocks;
+  return attach(a, key, std::make_unique<Blocks>(a));
 }
 
-/// y = A x, or z + A x.
-PetscErrorCode multiply_and_add_single(Mat a, Vec x, Vec z, Vec y)
+/// work(entries of x, z, y); z may be null, its entries then are, too.
+template <class Work>
+PetscErrorCode with_entries(Mat a, Vec x, Vec z, Vec y, const Work& work)
 {
   PetscFunctionBegin;
   PetscInt n = 0;
@@ -197,7 +255,7 @@ PetscErrorCode multiply_and_add_single(Mat a, Vec x, Vec z, Vec y)
   try
   {
     const PetscScalar* begin = z == y ? out : added;
-    blocks_of(a).multiply(a, std::span(in, n_columns), std::span(begin, begin ? n : 0), std::span(out, n));
+    work(std::span(in, n_columns), std::span(begin, begin ? n : 0), std::span(out, n));
   }
   catch (const std::bad_alloc&)
   {
@@ -213,12 +271,27 @@ PetscErrorCode multiply_and_add_single(Mat a, Vec x, Vec z, Vec y)
   PetscFunctionReturn(error);
 }
 
+/// y = A x, or z + A x.
+PetscErrorCode multiply_and_add_single(Mat a, Vec x, Vec z, Vec y)
+{
+  return with_entries(a, x, z, y,
+                      [a](const auto& in, const auto& added, const auto& out)
+                      { blocks_of(a).multiply(a, in, added, out); });
+}
+
 PetscErrorCode multiply_single(Mat a, Vec x, Vec y)
 {
   return multiply_and_add_single(a, x, nullptr, y);
 }
 
-/// The original product of a matrix; on several processes, of its block of own columns.
+PetscErrorCode multiply_double(Mat a, Vec x, Vec y)
+{
+  return with_entries(a, x, nullptr, y,
+                      [a](const auto& in, const auto& /*added*/, const auto& out)
+                      { blocks_of(a).multiply_exactly(a, in, out); });
+}
+
+/// The product of a matrix in double precision; on several processes, of its block of own columns.
 struct Exact
 {
   Mat a;
@@ -269,8 +342,9 @@ SingleProduct::SingleProduct(Mat a) : own_(local_blocks(a).own)
   MPI_Comm processes = MPI_COMM_NULL;
   check(MatGetLocalSize(a, &n, nullptr), making);
   check(PetscObjectGetComm(reinterpret_cast<PetscObject>(a), &processes), making);
+  const auto original = reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_);
   auto context =
-      std::make_unique<Exact>(Exact{a, own_, reinterpret_cast<PetscErrorCode (*)(Mat, Vec, Vec)>(product_)});
+      std::make_unique<Exact>(Exact{a, own_, blocks_of(own_).are_of_nodes() ? multiply_double : original});
   Mat shell = nullptr;
   check(MatCreateShell(processes, n, n, PETSC_DETERMINE, PETSC_DETERMINE, context.get(), &shell), making);
   exact_.reset(shell);

@@ -2,7 +2,8 @@
 
 /// @file single_product.h
 /// Products in single precision, for preconditioners. In blocks of floats a matrix has a third of its size in
-/// double precision with an index per entry, and a product takes as long as reading it.
+/// double precision with an index per entry, and a product takes as long as reading it. Products in double
+/// precision where these are needed, too.
 
 #include "tribound/algebra/petsc_detail.h"
 
@@ -25,7 +26,7 @@ class SingleProduct
   SingleProduct(const SingleProduct&) = delete;
   SingleProduct& operator=(const SingleProduct&) = delete;
 
-  /// A matrix with the original product of `a`. For products only, and only while this is alive.
+  /// A matrix with the product of `a` in double precision. For products only, and only while this is alive.
   [[nodiscard]] Mat exact() const { return exact_.get(); }
 
  private:

@@ -57,25 +57,6 @@ SparseRows pattern_of(Index n, const Triplets& entries, std::vector<int>& places
   return rows;
 }
 
-SparseRows sum(const SparseRows& a, const SparseRows& b)
-{
-  assert(a.begin.size() == b.begin.size());
-  SparseRows result;
-  result.columns.reserve(a.columns.size() + b.columns.size());
-  for (std::size_t i = 0; i + 1 < a.begin.size(); ++i)
-  {
-    std::set_union(a.columns.begin() + a.begin[i], a.columns.begin() + a.begin[i + 1],
-                   b.columns.begin() + b.begin[i], b.columns.begin() + b.begin[i + 1],
-                   std::back_inserter(result.columns));
-    result.end_row();
-  }
-  require_countable(result.columns.size());
-  result.columns.shrink_to_fit();
-  result.values.resize(result.columns.size());
-  assign_sum(a, b, result);
-  return result;
-}
-
 namespace
 {
 
@@ -91,23 +72,46 @@ void add_row(const SparseRows& a, std::size_t i, SparseRows& sum)
   }
 }
 
+/// Row i of `sum` becomes that of a + b.
+void assign_row(const SparseRows& a, const SparseRows& b, std::size_t i, SparseRows& sum)
+{
+  const auto begin = sum.values.begin() + sum.begin[i];
+  const auto end = sum.values.begin() + sum.begin[i + 1];
+  if (a.begin[i + 1] - a.begin[i] == end - begin)
+    std::copy(a.values.begin() + a.begin[i], a.values.begin() + a.begin[i + 1], begin);
+  else
+  {
+    std::fill(begin, end, 0.0);
+    add_row(a, i, sum);
+  }
+  add_row(b, i, sum);
+}
+
 }  // namespace
+
+SparseRows sum(const SparseRows& a, const SparseRows& b)
+{
+  assert(a.begin.size() == b.begin.size());
+  SparseRows result;
+  result.columns.reserve(a.columns.size() + b.columns.size());
+  for (std::size_t i = 0; i + 1 < a.begin.size(); ++i)
+  {
+    std::set_union(a.columns.begin() + a.begin[i], a.columns.begin() + a.begin[i + 1],
+                   b.columns.begin() + b.begin[i], b.columns.begin() + b.begin[i + 1],
+                   std::back_inserter(result.columns));
+    result.end_row();
+  }
+  require_countable(result.columns.size());
+  result.columns.shrink_to_fit();
+  result.values.resize(result.columns.size());
+  for (std::size_t i = 0; i + 1 < a.begin.size(); ++i) assign_row(a, b, i, result);
+  return result;
+}
 
 void assign_sum(const SparseRows& a, const SparseRows& b, SparseRows& result)
 {
   for (std::size_t i = 0; i + 1 < result.begin.size(); ++i)
-  {
-    const auto begin = result.values.begin() + result.begin[i];
-    const auto end = result.values.begin() + result.begin[i + 1];
-    if (a.begin[i + 1] - a.begin[i] == end - begin)
-      std::copy(a.values.begin() + a.begin[i], a.values.begin() + a.begin[i + 1], begin);
-    else
-    {
-      std::fill(begin, end, 0.0);
-      add_row(a, i, result);
-    }
-    add_row(b, i, result);
-  }
+    if (b.begin[i] < b.begin[i + 1]) assign_row(a, b, i, result);
 }
 
 }  // namespace tribound::algebra

@@ -23,7 +23,8 @@ void require_countable(std::size_t n_entries);
 /// a + b, whose pattern is the union of theirs.
 [[nodiscard]] SparseRows sum(const SparseRows& a, const SparseRows& b);
 
-/// The same for other values of a and b, stored in a result of sum(a, b).
+/// The same for other values of b, stored in a result of sum(a, b). Rows in which b has no entries stay as
+/// they are.
 void assign_sum(const SparseRows& a, const SparseRows& b, SparseRows& result);
 
 }  // namespace tribound::algebra
