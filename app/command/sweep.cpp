@@ -79,19 +79,22 @@ class FileHashes
  public:
   /// That of the only file of a case, or of the hashes of all; empty without files, or where they cannot be
   /// read, which the run itself will report.
-  const std::string& operator()(const case_file::Config& config)
+  std::string operator()(const case_file::Config& config)
   {
-    const std::vector<std::filesystem::path> files = case_file::files_of(config);
-    const auto [entry, is_new] = known_.try_emplace(files);
-    if (!is_new) return entry->second;
-    const std::vector<io::HashedFile> hashed = io::hashed_files(files);
-    for (const io::HashedFile& file : hashed) entry->second += file.sha256;
-    if (hashed.size() > 1) entry->second = sha256(entry->second);
-    return entry->second;
+    std::string hashes;
+    std::size_t n_files = 0;
+    for (const std::filesystem::path& named : case_file::files_of(config))
+    {
+      const auto [entry, is_new] = known_.try_emplace(named);
+      if (is_new) entry->second = io::hashed_files({&named, 1});
+      for (const io::HashedFile& file : entry->second) hashes += file.sha256;
+      n_files += entry->second.size();
+    }
+    return n_files > 1 ? sha256(hashes) : hashes;
   }
 
  private:
-  std::map<std::vector<std::filesystem::path>, std::string> known_;
+  std::map<std::filesystem::path, std::vector<io::HashedFile>> known_;  ///< by names in cases
 };
 
 class Sweep

@@ -251,7 +251,8 @@ std::filesystem::path default_directory(const std::filesystem::path& case_file)
 
 std::vector<std::filesystem::path> files_of(const Config& config)
 {
-  std::vector<std::filesystem::path> files = mesh::files_of(config.mesh);
+  std::vector<std::filesystem::path> files;
+  if (const auto* file = std::get_if<mesh::MeshFile>(&config.mesh)) files.push_back(file->path);
   for (const auto* surfaces : {&config.obstacles, &config.shapes})
     for (const SurfaceConfig& surface : *surfaces)
       if (surface.kind == SurfaceConfig::Kind::surface) files.push_back(surface.file);

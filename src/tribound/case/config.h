@@ -205,7 +205,8 @@ struct Config
   io::EffectiveCase effective;
 };
 
-/// The files that the case names and whose contents decide the result: of the mesh, and of surfaces.
+/// The files that the case names and whose contents decide the result: of the mesh, and of surfaces. Those
+/// that a deck includes are not among them.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const Config& config);
 
 /// Finds where the contacts of the case separate the bodies of a mesh. Throws InputError for a boundary that

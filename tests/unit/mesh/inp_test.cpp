@@ -369,11 +369,9 @@ TEST(Inp, IncludedFilesAreKnown)
   const mesh::MeshFile file = directory.write("deck.inp", "*INCLUDE, INPUT=a.inp\n*NODE, INPUT=b.inp\n");
   (void)directory.write("a.inp", "*AMPLITUDE, INPUT=nowhere.inp\n");
   (void)directory.write("b.inp", "1, 0, 0, 0\n");
-  EXPECT_THAT(mesh::files_of(file),
+  EXPECT_THAT(mesh::with_included(file.path),
               testing::ElementsAre(file.path, directory / "a.inp", directory / "b.inp"));
-  EXPECT_THAT(mesh::files_of(mesh::MeshFile{directory / "gone.inp"}),
-              testing::ElementsAre(directory / "gone.inp"));
-  EXPECT_THAT(mesh::files_of(mesh::BoxMesh{}), testing::IsEmpty());
+  EXPECT_THAT(mesh::with_included(directory / "gone.inp"), testing::ElementsAre(directory / "gone.inp"));
 }
 
 /// By Gmsh's own writer, of which only the names of sets and the order of nodes are its own choice.

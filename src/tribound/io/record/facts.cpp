@@ -17,6 +17,7 @@
 #include "tribound/io/file/atomic_file.h"
 #include "tribound/mesh/geometry.h"
 #include "tribound/mesh/gmsh.h"
+#include "tribound/mesh/import/read.h"
 #include "tribound/problem/weights.h"
 
 namespace tribound::io
@@ -211,9 +212,10 @@ std::vector<HashedFile> hashed_files(std::span<const std::filesystem::path> file
 {
   std::vector<HashedFile> hashed;
   hashed.reserve(files.size());
-  for (const std::filesystem::path& file : files)
-    if (const std::string content = read_text(file); !content.empty())
-      hashed.push_back({file.filename().string(), sha256(content)});
+  for (const std::filesystem::path& named : files)
+    for (const std::filesystem::path& file : mesh::with_included(named))
+      if (const std::string content = read_text(file); !content.empty())
+        hashed.push_back({file.filename().string(), sha256(content)});
   return hashed;
 }
 

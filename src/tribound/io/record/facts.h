@@ -114,7 +114,8 @@ template <int dim>
 [[nodiscard]] MeshFacts mesh_facts(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
                                    const fem::Constraints& constraints, const problem::Units& units = {});
 
-/// The files by their names without directories; without those that cannot be read.
+/// The files by their names without directories, decks with those that they include; without those that
+/// cannot be read.
 [[nodiscard]] std::vector<HashedFile> hashed_files(std::span<const std::filesystem::path> files);
 
 /// Facts about the program and the libraries it runs with.

@@ -170,14 +170,11 @@ AnyMesh read_mesh(const MeshSource& source, const FindSeams& find_seams, const s
   return boxes.front().box.cells.size() == 3 ? finish(box_meshes<3>(boxes)) : finish(box_meshes<2>(boxes));
 }
 
-std::vector<std::filesystem::path> files_of(const MeshSource& source)
+std::vector<std::filesystem::path> with_included(const std::filesystem::path& file)
 {
-  const auto* file = std::get_if<MeshFile>(&source);
-  if (file == nullptr) return {};
   std::error_code error;
-  return suffix_of(file->path) == ".inp" && std::filesystem::is_regular_file(file->path, error)
-             ? files_of_inp(file->path)
-             : std::vector{file->path};
+  return suffix_of(file) == ".inp" && std::filesystem::is_regular_file(file, error) ? files_of_inp(file)
+                                                                                    : std::vector{file};
 }
 
 }  // namespace tribound::mesh

@@ -35,8 +35,8 @@ using AnyMesh = std::variant<Mesh<2>, Mesh<3>>;
                                 std::vector<std::string>* notes = nullptr,
                                 std::span<const FormulaGroup> groups = {});
 
-/// The files that the mesh is read from: a deck with those that it includes, else what the case names; none
-/// for boxes. Files that a .geo or a .pvtu names are not among them.
-[[nodiscard]] std::vector<std::filesystem::path> files_of(const MeshSource& source);
+/// A file that meshes are read from, a deck with those that it includes. Files that a .geo or a .pvtu names
+/// are not among them.
+[[nodiscard]] std::vector<std::filesystem::path> with_included(const std::filesystem::path& file);
 
 }  // namespace tribound::mesh
