@@ -242,16 +242,17 @@ TEST(InitialStress, InterpolationIsBounded)
                                  {.degree = p});
       for (std::size_t k = 0; k < c.form.segments().size(); ++k)
       {
-        const auto interpolated = c.form.initial_traction(k);
+        const auto interpolated = c.form.initial_tractions().at_points(k);
         double largest = 0;
         for (int q = 0; q < c.form.n_segment_points(); ++q)
         {
           const Point<2> given = c.problem.initial_stress(0, c.form.contact_points(k)[q].x) * Point<2>(0, -1);
           largest = std::max(largest, (interpolated.col(q) - given).norm());
         }
-        EXPECT_LE(largest, c.form.initial_deviation(k) + 1e-14) << field << ", p = " << p;
+        EXPECT_LE(largest, c.form.initial_tractions().deviation(k) + 1e-14) << field << ", p = " << p;
         const double jump = std::string(field) == "x < 1 ? 1 : 3" ? 12 : 0;  // of both sides, on either
-        EXPECT_LE(c.form.initial_deviation(k), 1e3 * largest + jump + 1e-12) << field << ", p = " << p;
+        EXPECT_LE(c.form.initial_tractions().deviation(k), 1e3 * largest + jump + 1e-12)
+            << field << ", p = " << p;
       }
     }
 }
@@ -268,8 +269,8 @@ TEST(InitialStress, WhatIsMissedCounts)
   const solve::NewtonResult<2> solved = c.solve();
   double on_contact = 0;
   for (std::size_t k = 0; k < c.form.segments().size(); ++k)
-    on_contact +=
-        c.form.segments()[k].h * c.form.segments()[k].measure * std::pow(c.form.initial_deviation(k), 2);
+    on_contact += c.form.segments()[k].h * c.form.segments()[k].measure *
+                  std::pow(c.form.initial_tractions().deviation(k), 2);
   double in_cells = 0;
   for (Index cell = 0; cell < c.mesh.n_cells(); ++cell)
     in_cells += std::pow(c.form.data().initial_stress().remainder(cell).oscillation, 2);

@@ -121,7 +121,7 @@ auto ContactTerms<dim>::fields(int k, std::span<const double> u, const Tractions
 {
   const auto without_gap = form_.traction_without_gap(u, k);
   std::vector<Point<dim>> augmented(form_.n_segment_points());
-  const auto initial = form_.initial_traction(k);
+  const auto initial = form_.initial_tractions().at_points(k);
   const bool scaled = is_scaled(k);
   for (int q = 0; q < form_.n_segment_points(); ++q)
     augmented[q] = scale(scaled, form_.contact_points(k)[q].x) * (without_gap.col(q) + initial.col(q));
@@ -235,7 +235,7 @@ ContactSquares ContactTerms<dim>::operator()(int k, std::span<const double> u, c
 template <int dim>
 ContactSquares ContactTerms<dim>::with_initial_deviation(int k, ContactSquares squares) const
 {
-  const double deviation = form_.initial_deviation(k);
+  const double deviation = form_.initial_tractions().deviation(k);
   if (deviation == 0) return squares;
   const contact::ContactSegment<dim>& segment = form_.segments()[k];
   const double missed =

@@ -1,11 +1,14 @@
 #include "tribound/contact/nitsche/initial_stress.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "tribound/base/error.h"
 #include "tribound/base/parallel.h"
 #include "tribound/contact/nitsche/datum_moments.h"
 #include "tribound/fem/degree.h"
@@ -188,11 +191,14 @@ Point<dim> initial_traction(const problem::Problem<dim>& problem, const mesh::Me
   return sum;
 }
 
-/// |f - I f| <= (1 + Lambda) |f - P| for every P of degree p. Nodes are on the boundary of the segment, and
-/// it may itself be where a formula jumps: the values on all sides count.
+namespace
+{
+
+/// An upper bound of |f - I f| <= (1 + Lambda) |f - P| for f = {sigma_0} and every P of degree p. Nodes are
+/// on the boundary of the segment, and it may itself be where a formula jumps: the values on all sides count.
 template <int dim>
-double initial_traction_deviation(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
-                                  const ContactSegment<dim>& segment, int degree)
+double interpolation_error(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
+                           const ContactSegment<dim>& segment, int degree)
 {
   std::array<problem::Enclosure, fem::max_degree + 2> storage;
   const auto taylor = std::span(storage).first(degree + 2);
@@ -218,6 +224,69 @@ double initial_traction_deviation(const problem::Problem<dim>& problem, const me
   return (1 + lebesgue_constant(degree)) * distance;
 }
 
+/// The Lipschitz constants of laws with a history are not known: for them the interpolation must be exact.
+template <int dim>
+[[noreturn]] void refuse_memory(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                                const ContactSegment<dim>& segment)
+{
+  Where where;
+  segment.for_each_side(
+      [&](const SegmentSide<dim>& side)
+      {
+        for (const auto& term : initial_stress_datum(problem, space.mesh().region(side.facet.cell)).terms)
+          if (term.value->degree() > space.degree()) where = term.value->where();
+      });
+  throw InputError(
+      where,
+      fmt::format("is no polynomial of degree {} on the interface \"{}\", whose law has a history",
+                  space.degree(), space.mesh().boundary_names()[segment.slave.facet.tag]),
+      "a polynomial of no higher degree there");
+}
+
+}  // namespace
+
+template <int dim>
+InitialTractions<dim>::InitialTractions(const problem::Problem<dim>& problem,
+                                        const fem::LagrangeSpace<dim>& space,
+                                        std::span<const ContactSegment<dim>> segments,
+                                        std::span<const Point<dim - 1>> points)
+    : nodes_(space.degree(), points), degree_(space.degree())
+{
+  if (!problem.has_initial_stress()) return;
+  at_nodes_.reserve(segments.size() * nodes_.nodes().size());
+  deviations_.reserve(segments.size());
+  for (const ContactSegment<dim>& segment : segments)
+  {
+    for (const Point<dim - 1>& s : nodes_.nodes())
+      at_nodes_.push_back(initial_traction(problem, space.mesh(), segment, s));
+    deviations_.push_back(interpolation_error(problem, space.mesh(), segment, degree_));
+    if (deviations_.back() > 0 && problem::has_memory(segment.contact->law))
+      refuse_memory(problem, space, segment);
+  }
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, Eigen::Dynamic> InitialTractions<dim>::at_points(std::size_t k) const
+{
+  const auto values = nodes_.values();
+  if (empty()) return Eigen::Matrix<double, dim, Eigen::Dynamic>::Zero(dim, values.cols());
+  return Eigen::Map<const Eigen::Matrix<double, dim, Eigen::Dynamic>>(at_nodes_[k * values.rows()].data(),
+                                                                      dim, values.rows()) *
+         values;
+}
+
+template <int dim>
+std::vector<Point<dim>> InitialTractions<dim>::at(std::size_t k, std::span<const Point<dim - 1>> s) const
+{
+  std::vector<Point<dim>> result(s.size(), Point<dim>::Zero());
+  if (empty()) return result;
+  const fem::Tabulation<dim - 1> theta = fem::LagrangeBasis<dim - 1>(degree_).tabulate(s);
+  for (int q = 0; q < theta.n_points; ++q)
+    for (int l = 0; l < theta.n_nodes; ++l)
+      result[q] += theta.values_at(q)[l] * at_nodes_[k * theta.n_nodes + l];
+  return result;
+}
+
 template Datum<2, 3> initial_stress_datum(const problem::Problem<2>&, int);
 template Datum<3, 6> initial_stress_datum(const problem::Problem<3>&, int);
 template Datum<2, 1> initial_hoop_datum(const problem::Problem<2>&, int);
@@ -228,9 +297,7 @@ template Point<2> initial_traction(const problem::Problem<2>&, const mesh::Mesh<
                                    const Point<1>&);
 template Point<3> initial_traction(const problem::Problem<3>&, const mesh::Mesh<3>&, const ContactSegment<3>&,
                                    const Point<2>&);
-template double initial_traction_deviation(const problem::Problem<2>&, const mesh::Mesh<2>&,
-                                           const ContactSegment<2>&, int);
-template double initial_traction_deviation(const problem::Problem<3>&, const mesh::Mesh<3>&,
-                                           const ContactSegment<3>&, int);
+template class InitialTractions<2>;
+template class InitialTractions<3>;
 
 }  // namespace tribound::contact

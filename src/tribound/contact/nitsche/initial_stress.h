@@ -3,12 +3,15 @@
 /// @file initial_stress.h
 /// The initial stress sigma_0 as the discrete problem on a mesh sees it, method section 16.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "tribound/contact/nitsche/datum.h"
 #include "tribound/contact/nitsche/segment.h"
+#include "tribound/contact/nitsche/segment_values.h"
+#include "tribound/fem/space.h"
 #include "tribound/mesh/mesh.h"
 #include "tribound/problem/problem.h"
 
@@ -91,11 +94,31 @@ template <int dim>
 [[nodiscard]] Point<dim> initial_traction(const problem::Problem<dim>& problem, const mesh::Mesh<dim>& mesh,
                                           const ContactSegment<dim>& segment, const Point<dim - 1>& s);
 
-/// An upper bound of the largest |{sigma_0} - I {sigma_0}| on a segment, I the interpolation at the nodes of
-/// P^p, from enclosures; functions that have none count as 0. Throws InputError for a formula without bound.
+/// I {sigma_0} on segments, I the interpolation at the nodes of P^p.
 template <int dim>
-[[nodiscard]] double initial_traction_deviation(const problem::Problem<dim>& problem,
-                                                const mesh::Mesh<dim>& mesh,
-                                                const ContactSegment<dim>& segment, int degree);
+class InitialTractions
+{
+ public:
+  /// `points`: of the rule on segments. Throws InputError for a formula without bound on a segment, and for
+  /// one that I changes where the law has a history. Nothing is kept by reference.
+  InitialTractions(const problem::Problem<dim>& problem, const fem::LagrangeSpace<dim>& space,
+                   std::span<const ContactSegment<dim>> segments, std::span<const Point<dim - 1>> points);
+
+  /// Whether there are none.
+  [[nodiscard]] bool empty() const { return at_nodes_.empty(); }
+  /// On segment k at the points of the rule, a column for each.
+  [[nodiscard]] Eigen::Matrix<double, dim, Eigen::Dynamic> at_points(std::size_t k) const;
+  /// On segment k at the points with coordinates s.
+  [[nodiscard]] std::vector<Point<dim>> at(std::size_t k, std::span<const Point<dim - 1>> s) const;
+  /// An upper bound of the largest |{sigma_0} - I {sigma_0}| on segment k, from enclosures; functions that
+  /// have none count as 0.
+  [[nodiscard]] double deviation(std::size_t k) const { return deviations_.empty() ? 0 : deviations_[k]; }
+
+ private:
+  SegmentNodes<dim> nodes_;
+  int degree_;
+  std::vector<Point<dim>> at_nodes_;  ///< of all segments; empty: 0
+  std::vector<double> deviations_;    ///< of all segments; empty: 0
+};
 
 }  // namespace tribound::contact

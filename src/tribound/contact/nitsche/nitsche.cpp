@@ -45,14 +45,14 @@ NitscheForm<dim>::NitscheForm(const problem::Problem<dim>& problem, const fem::L
       tables_(space.basis(), segments_, facet_rule().points),
       nodes_(problem.is_axisymmetric() ? SegmentNodes<dim>(facet_rule().points)
                                        : SegmentNodes<dim>(space.degree(), facet_rule().points)),
-      initial_nodes_(space.degree(), facet_rule().points),
-      node_tables_(space.basis(), segments_, nodes_.nodes())
+      node_tables_(space.basis(), segments_, nodes_.nodes()),
+      initial_tractions_(space.mesh().ranks().together(
+          [this] { return InitialTractions<dim>(*problem_, *space_, segments_, facet_rule().points); }))
 {
   add_initial_stress<dim>(data_, space, load_, meridian_);
   springs_.add_rest(load_);
   rigid_parts_.add_load(load_);
   look_for_bonds();
-  space.mesh().ranks().together([this] { find_initial_tractions(); });
 }
 
 template <int dim>
@@ -178,71 +178,11 @@ auto NitscheForm<dim>::traction_without_gap(std::span<const double> u, std::size
   return nodal * nodes_.values();
 }
 
-/// The Lipschitz constants of laws with a history are not known: for them the interpolation must be exact.
-template <int dim>
-void NitscheForm<dim>::find_initial_tractions()
-{
-  if (!problem_->has_initial_stress()) return;
-  initial_tractions_.reserve(segments_.size() * initial_nodes_.nodes().size());
-  initial_deviation_.reserve(segments_.size());
-  for (const ContactSegment<dim>& segment : segments_)
-  {
-    for (const Point<dim - 1>& s : initial_nodes_.nodes())
-      initial_tractions_.push_back(contact::initial_traction(*problem_, space_->mesh(), segment, s));
-    initial_deviation_.push_back(
-        initial_traction_deviation(*problem_, space_->mesh(), segment, space_->degree()));
-    if (initial_deviation_.back() == 0 || !problem::has_memory(segment.contact->law)) continue;
-    Where where;
-    segment.for_each_side(
-        [&](const SegmentSide<dim>& side)
-        {
-          for (const auto& term :
-               initial_stress_datum(*problem_, space_->mesh().region(side.facet.cell)).terms)
-            if (term.value->degree() > space_->degree()) where = term.value->where();
-        });
-    throw InputError(
-        where,
-        fmt::format("is no polynomial of degree {} on the interface \"{}\", whose law has a history",
-                    space_->degree(), space_->mesh().boundary_names()[segment.slave.facet.tag]),
-        "a polynomial of no higher degree there");
-  }
-}
-
-template <int dim>
-auto NitscheForm<dim>::initial_traction(std::size_t k) const -> Columns
-{
-  const auto n = static_cast<std::size_t>(initial_nodes_.values().rows());
-  if (initial_tractions_.empty()) return Columns::Zero(dim, n_segment_points());
-  return Eigen::Map<const Columns>(initial_tractions_[k * n].data(), dim, static_cast<Eigen::Index>(n)) *
-         initial_nodes_.values();
-}
-
-template <int dim>
-std::vector<Point<dim>> NitscheForm<dim>::initial_tractions(std::size_t k, std::span<const Point<dim - 1>> s,
-                                                            WhichData which) const
-{
-  std::vector<Point<dim>> result(s.size(), Point<dim>::Zero());
-  if (initial_tractions_.empty()) return result;
-  if (which == WhichData::given)
-  {
-    std::ranges::transform(s, result.begin(),
-                           [&](const Point<dim - 1>& at) {
-                             return contact::initial_traction(*problem_, space_->mesh(), segments_[k], at);
-                           });
-    return result;
-  }
-  const fem::Tabulation<dim - 1> theta = fem::LagrangeBasis<dim - 1>(space_->degree()).tabulate(s);
-  for (int q = 0; q < theta.n_points; ++q)
-    for (int l = 0; l < theta.n_nodes; ++l)
-      result[q] += theta.values_at(q)[l] * initial_tractions_[k * theta.n_nodes + l];
-  return result;
-}
-
 template <int dim>
 auto NitscheForm<dim>::augmented_traction(std::span<const double> u, std::size_t k) const -> Columns
 {
   Columns result = traction_without_gap(u, k);
-  if (!initial_tractions_.empty()) result += initial_traction(k);
+  if (!initial_tractions_.empty()) result += initial_tractions_.at_points(k);
   for (int q = 0; q < n_segment_points(); ++q)
   {
     const ContactPoint<dim>& point = contact_points(k)[q];
@@ -377,7 +317,11 @@ std::vector<ContactState<dim>> NitscheForm<dim>::contact_states(std::span<const 
 
   const bool is_own = table.slave == tables_[k].slave;  // the table is that of the contact points
 
-  const std::vector<Point<dim>> initial = initial_tractions(k, table.points, which);
+  std::vector<Point<dim>> initial = initial_tractions_.at(k, table.points);
+  if (which == WhichData::given && !initial_tractions_.empty())
+    std::ranges::transform(table.points, initial.begin(),
+                           [&](const Point<dim - 1>& s)
+                           { return initial_traction(*problem_, space_->mesh(), segment, s); });
   std::vector<ContactState<dim>> states;
   states.reserve(table.points.size());
   for (int q = 0; q < static_cast<int>(table.points.size()); ++q)

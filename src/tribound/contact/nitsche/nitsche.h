@@ -145,13 +145,7 @@ class NitscheForm
   using Columns = Eigen::Matrix<double, dim, Eigen::Dynamic>;
   /// {C eps(u)} - gamma [u] at the contact points of segment k: P(u) without gap and initial stress.
   [[nodiscard]] Columns traction_without_gap(std::span<const double> u, std::size_t k) const;
-  /// {sigma_0} at the contact points of segment k, interpolated in P^p.
-  [[nodiscard]] Columns initial_traction(std::size_t k) const;
-  /// An upper bound of what the interpolation changes on segment k, stress.
-  [[nodiscard]] double initial_deviation(std::size_t k) const
-  {
-    return initial_deviation_.empty() ? 0 : initial_deviation_[k];
-  }
+  [[nodiscard]] const InitialTractions<dim>& initial_tractions() const { return initial_tractions_; }
 
   /// p_w n at the contact points: T + p_w n is the effective traction.
   [[nodiscard]] std::vector<Point<dim>> water_pressure() const;
@@ -186,10 +180,6 @@ class NitscheForm
  private:
   [[nodiscard]] std::vector<ContactPoint<dim>> make_points() const;
   void look_for_bonds();
-  void find_initial_tractions();
-  /// {sigma_0} at points of segment k, as given or interpolated.
-  [[nodiscard]] std::vector<Point<dim>> initial_tractions(std::size_t k, std::span<const Point<dim - 1>> s,
-                                                          WhichData which) const;
   /// The arguments of the law at a contact point of segment k.
   [[nodiscard]] problem::LawPoint<dim> law_point(std::size_t k, int q) const
   {
@@ -249,10 +239,8 @@ class NitscheForm
   std::vector<ContactPoint<dim>> points_;
   SegmentTables<dim> tables_;  ///< at the contact points
   SegmentNodes<dim> nodes_;
-  SegmentNodes<dim> initial_nodes_;  ///< where {sigma_0} is interpolated: those of P^p
   SegmentTables<dim> node_tables_;
-  std::vector<Point<dim>> initial_tractions_;           ///< {sigma_0} at the nodes of all segments; empty: 0
-  std::vector<double> initial_deviation_;               ///< of all segments; empty: 0
+  InitialTractions<dim> initial_tractions_;
   std::shared_ptr<const ContactHistory<dim>> history_;  ///< null: none yet
   bool has_bonds_ = false;                              ///< on any rank
 };
