@@ -1,9 +1,6 @@
 """Judgements of bodies of revolution against errors by true_errors.py, code that shares nothing with them."""
 
-import json
 import os
-import shutil
-import subprocess
 import tempfile
 import unittest
 from collections.abc import Callable
@@ -22,7 +19,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 ALPHA = 0.5
 CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
-PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 
 
 def body(inner: float, **more: Any) -> dict[str, Any]:
@@ -240,28 +236,6 @@ class Use(unittest.TestCase):
         stress = averaged_stress(self.level)[:, [0, 1, 3]]
         with self.assertRaisesRegex(tb.InputError, "without zz"):
             tb.judge(self.case, (self.level.nodes, self.level.displacement, stress))
-
-    @unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "no program, or no mpirun")
-    def test_processes(self) -> None:
-        """Two processes find what one does."""
-        found = []
-        with tempfile.TemporaryDirectory() as directory:
-            folder = Path(directory)
-            tb.judge(self.case, (self.level.nodes, self.level.displacement, averaged_stress(self.level)),
-                     directory=folder)
-            command = [str(PROGRAM), "judge", "judge/case.toml", "--solution", "solution.csv", "-q"]
-            for ranks in (1, 2):
-                out = folder / f"on_{ranks}"
-                start = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-                ended = subprocess.run([*start, *command, "--set", f'output.directory="{out}"'], cwd=folder,
-                                       env=dict(os.environ), capture_output=True, text=True)
-                self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-                found.append(json.loads((out / "judge/judgement.json").read_text()))
-        one, two = found
-        self.assertEqual(one["cells"], two["cells"])
-        for field in ("displacement", "stress"):
-            np.testing.assert_allclose(two[field]["error"], one[field]["error"], rtol=1e-6)
-            np.testing.assert_allclose(two[field]["distance"], one[field]["distance"], rtol=1e-8)
 
 
 if __name__ == "__main__":

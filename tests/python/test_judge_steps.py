@@ -1,9 +1,6 @@
 """Judgements of all load steps at once, against separate ones and against runs of the steps alone."""
 
 import json
-import os
-import shutil
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -13,8 +10,6 @@ import numpy as np
 import tribound as tb
 
 from small_cases import block
-
-PROGRAM = os.environ.get("TRIBOUND_PROGRAM")
 
 
 def pressed(**contact: Any) -> dict[str, Any]:
@@ -221,47 +216,6 @@ class Pairs(unittest.TestCase):
         broken[3, 1] = np.nan
         with self.assertRaisesRegex(tb.InputError, "solution1.csv: has no displacement at node"):
             tb.judge(self.case, [self.theirs[0], (points, broken)], steps=True)
-
-
-@unittest.skipUnless(PROGRAM and shutil.which("mpirun"), "no program, or no mpirun")
-class Program(unittest.TestCase):
-    def judge(self, folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
-        start = ["mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", str(ranks)] if ranks > 1 else []
-        series = ["--steps", "--solution", "theirs/series.pvd"]
-        command = [*start, str(PROGRAM), "judge", "case.toml", "-q", *series]
-        environment = dict(os.environ)  # without what MPI has set in this process
-        return subprocess.run(
-            [*command, *options], cwd=folder, env=environment, capture_output=True, text=True
-        )
-
-    def test_ranks_and_files(self) -> None:
-        with tempfile.TemporaryDirectory() as directory:
-            folder = Path(directory)
-            case = pressed(**LAWS[1])
-            tb.run(case, set=COARSE, directory=folder / "theirs")
-            shutil.copy(folder / "theirs/case.toml", folder / "case.toml")
-            sets = ("--set", "degree=2", "--set", "adapt.max_levels=12", "--set", "adapt.tolerance=0.02")
-            one = self.judge(folder, *sets, "--set", 'output.directory="one"')
-            two = self.judge(folder, *sets, "--set", 'output.directory="two"', ranks=2)
-            self.assertEqual((one.returncode, two.returncode), (0, 0), one.stdout + two.stderr)
-            table = [line.split() for line in one.stdout.splitlines()[1:4]]
-            self.assertEqual(table[0][:4], ["errors", "step", "t", "displacement"])
-            self.assertEqual([row[0] for row in table[1:]], ["1", "2"])
-            self.assertEqual([row[1] for row in table[1:]], ["0.5", "1"])
-            judged = [folder / name / "judge/judgement.json" for name in ("one", "two")]
-            for a, b in zip(*(json.loads(file.read_text())["steps"] for file in judged)):
-                for field in ("displacement", "stress"):
-                    np.testing.assert_allclose(a[field]["error"], b[field]["error"], rtol=1e-8)
-            for number in ("001", "002"):
-                for name in ("judged.vtu", "judged_cells.csv"):
-                    self.assertTrue((folder / "two/judge/judged_steps" / number / name).exists())
-            self.assertEqual(self.judge(folder, *sets, "--accept", "0.001").returncode, 4)
-            ended = subprocess.run(
-                [str(PROGRAM), "run", "case.toml", "-q", "--set", 'output.directory="two/judge"'],
-                cwd=folder, capture_output=True, text=True,
-            )
-            self.assertIn(ended.returncode, (0, 3), ended.stderr)
-            self.assertFalse((folder / "two/judge/judged_steps").exists())
 
 
 if __name__ == "__main__":

@@ -1,9 +1,8 @@
-"""A guest in the interpreter: threads, Ctrl-C, memory, other libraries, several ranks."""
+"""A guest in the interpreter: threads, Ctrl-C, memory, other libraries."""
 
 import gc
 import importlib.util
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -216,40 +215,6 @@ except PETSc.Error as error:
                 run = "assert tb.run(block(2, 2)).is_certified, 'run'"
                 ended = python(f"{imports}\n{run}\n{uses}\n{run}\nprint('done')")
                 self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "done\n", ""))
-
-
-@unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
-class Ranks(unittest.TestCase):
-    MPIRUN = ("mpirun", "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", "2")
-
-    def test_results_are_the_same_on_all(self) -> None:
-        script = """
-import tribound as tb, numpy as np
-result = tb.run(block(2, 2), keep_levels=True, on_level=lambda level: None)
-f = result.level.at([1, 0.5])
-print(f"{result.status} {result.bound:.9e} {f.displacement[0, 1]:.9e} {len(result.level.eta) < 400}\\n", end="")
-"""
-        one, two = python(script), python(script, *self.MPIRUN)
-        self.assertEqual(two.returncode, 0, two.stderr)
-        words = two.stdout.split()
-        self.assertEqual(words[:4], words[4:])
-        for a, b in zip(one.stdout.split()[1:3], words[1:3]):
-            self.assertAlmostEqual(float(a) / float(b), 1, places=5)
-
-    def test_errors_arrive_on_all(self) -> None:
-        script = """
-import tribound as tb
-for case, error in (({**block(2, 2), "degree": 9}, tb.InputError), (block(2, 2), KeyError)):
-    def observe(level):
-        raise KeyError("here")
-    try:
-        tb.run(case, on_level=observe)
-    except error as found:
-        print(type(found).__name__ + "\\n", end="")  # in one piece: both processes print
-"""
-        ended = python(script, *self.MPIRUN)
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertEqual(sorted(ended.stdout.split()), ["InputError"] * 2 + ["KeyError"] * 2)
 
 
 if __name__ == "__main__":
