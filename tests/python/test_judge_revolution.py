@@ -18,7 +18,7 @@ from true_errors import squared_errors
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 ALPHA = 0.5
-CASES = int(os.environ.get("TRIBOUND_CASES", "12"))
+CASES = int(os.environ.get("TRIBOUND_CASES", "6"))
 
 
 def body(inner: float, **more: Any) -> dict[str, Any]:
