@@ -66,7 +66,8 @@ TEST(SingleProduct, IsThatInDoublePrecisionToSevenDigits)
         const SingleProduct single(a.handle());
         EXPECT_LE(distance(product(a.handle(), x), y), 3e-7 * norm(y)) << block_size << ", " << unit;
         EXPECT_GT(distance(product(a.handle(), x), y), 0.0);
-        EXPECT_LE(distance(product(single.exact(), x), y), 1e-14 * norm(y));
+        const double rounding = block_size % 3 == 0 ? 1e-14 * norm(y) : 0;  // else the product is PETSc's
+        EXPECT_LE(distance(product(single.exact(), x), y), rounding);
         EXPECT_EQ(product(a.handle(), std::vector<double>(n, 0.0)), std::vector<double>(n, 0.0));
       }
       EXPECT_EQ(product(a.handle(), x), y);  // as before

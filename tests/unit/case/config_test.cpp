@@ -96,6 +96,7 @@ TEST(Config, ReadsEveryKey)
   EXPECT_EQ(config.title, "Block on a rigid floor, Tresca friction");
   EXPECT_EQ(config.method.degree, 2);
   EXPECT_EQ(std::get<mesh::MeshFile>(config.mesh).path, "cases/block.msh");
+  EXPECT_THAT(case_file::files_of(config), ElementsAre("cases/block.msh"));
   EXPECT_EQ(config.method.gamma_0(), 12.0);
   EXPECT_EQ(config.method.stopping.criterion, adapt::Stopping::tolerance);
   EXPECT_EQ(config.method.stopping.gamma_lin, 0.2);
@@ -232,6 +233,7 @@ TEST(Config, ReadsABox)
   EXPECT_THAT(box.lower, ElementsAre(0, 0, -1));
   EXPECT_THAT(box.upper, ElementsAre(1, 2, 3.5));
   EXPECT_THAT(box.cells, ElementsAre(2, 3, 4));
+  EXPECT_THAT(case_file::files_of(config), testing::IsEmpty());
 }
 
 TEST(Config, ReadsBoxes)
